@@ -80,20 +80,19 @@ std::optional<MoleculeLanes::Molecule> MoleculeLanes::molecule_of(const Constrai
   return molecule;
 }
 
-/// What is constant of molecules of three sites, all of them alike.
-std::optional<RigidTriangle> MoleculeLanes::triangle_of(const std::vector<Index>& molecules,
-                                                        const ParticleSystem<double>& s) const {
-  const Molecule& first = molecules_[at(molecules.front())];
-  const bool alike = std::all_of(molecules.begin(), molecules.end(),
-                                 [&](Index m) { return molecules_[at(m)].lengths == first.lengths; });
-  if (first.particles.size() != 3 || first.pairs.size() != 3 || !alike) return {};
-  std::array<double, 3> inverse_masses{}, lengths2{};
-  for (std::size_t a = 0; a < 3; ++a) inverse_masses[a] = 1 / s.masses()[first.particles[a]];
+std::array<double, 3> MoleculeLanes::sides2(const Molecule& molecule) {
+  std::array<double, 3> sides2{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto [a, b] = first.pairs[k];
-    lengths2[static_cast<std::size_t>(a + b - 1)] = first.lengths[k] * first.lengths[k];  // 0-1, 0-2, 1-2
+    const auto [a, b] = molecule.pairs[k];
+    sides2[static_cast<std::size_t>(a + b - 1)] = molecule.lengths[k] * molecule.lengths[k];
   }
-  return rigid_triangle(inverse_masses, lengths2);
+  return sides2;
+}
+
+Index MoleculeLanes::packs() const {
+  Index packs = 0;
+  for (const Kind& kind : kinds_) packs += kind.packs;
+  return packs;
 }
 
 ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSystem<double>& s) {
@@ -113,10 +112,6 @@ ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSys
     for (const Index i : molecule->particles) what.push_back(s.masses()[i]);
     for (const auto& [a, b] : molecule->pairs)
       what.insert(what.end(), {static_cast<double>(a), static_cast<double>(b)});
-    // Kernels for triangles are for equal lengths: which of them serves a molecule must not depend on others.
-    const bool triangle = molecule->particles.size() == 3 && molecule->pairs.size() == 3;
-    if (triangle && info.triangles != info.lanes)
-      what.insert(what.end(), molecule->lengths.begin(), molecule->lengths.end());
     if (info.equal_lengths)
       std::transform(molecule->lengths.begin(), molecule->lengths.end(), std::back_inserter(what),
                      Preconditioner::near);
@@ -137,9 +132,11 @@ ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSys
   for (std::size_t e = 0; e < left.size(); ++e) {
     if (left[e]) refuse(set.words(static_cast<Index>(e), s));
   }
-  for (const Kind& kind : kinds_) {
-    if (kind.triangle && kind.triangle->isosceles) continue;
-    const std::vector<Index>& tied = molecules_[at(kind.molecules.front())].particles;
+  for (const Molecule& molecule : molecules_) {
+    const std::vector<Index>& tied = molecule.particles;
+    if (molecule.is_triangle() && s.masses()[tied[1]] == s.masses()[tied[2]] &&
+        sides2(molecule)[0] == sides2(molecule)[1])
+      continue;
     refuse(fmt::format("distance of '{}' and '{}'", s.name(tied[0]), s.name(tied[1])));
   }
   return set.only(left);
@@ -147,11 +144,14 @@ ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSys
 
 void MoleculeLanes::add_kind(std::vector<Index> molecules, const ParticleSystem<double>& s) {
   Kind kind{.molecules = std::move(molecules)};
+  const Molecule& first = molecules_[at(kind.molecules.front())];
+  const ConstraintMethodInfo& info = info_of(options_.solver);
   choose_kernels(kind, s);
   if (kind.in_segments) {
     lay_in_segments(kind);
   } else {
     lay_side_by_side(kind);
+    if (first.is_triangle() && info.triangles != info.lanes) lay_triangles(kind, s);
   }
   kind.first_report = static_cast<Index>(reports_.size());
   reports_.resize(reports_.size() + at(kind.packs));
@@ -172,8 +172,7 @@ void MoleculeLanes::choose_kernels(Kind& kind, const ParticleSystem<double>& s) 
     kind.lanes = segments;
     return;
   }
-  kind.triangle = triangle_of(kind.molecules, s);
-  kind.kernels = kind.triangle ? info.triangles : info.lanes;
+  kind.kernels = first.is_triangle() ? info.triangles : info.lanes;
   if (kind.kernels == nullptr) kind.kernels = info.triangles;  // of molecules that will be refused
   kind.elimination.emplace(first.pairs, std::move(inverse));
   if (kind.kernels == newton_in_lanes) {
@@ -221,6 +220,19 @@ void MoleculeLanes::lay_side_by_side(Kind& kind) const {
       kind.lengths2[at((pack * 2 * n + k) * lanes + lane)] = length * length;
       kind.lengths2[at((pack * 2 * n + n + k) * lanes + lane)] = 1 / (length * length);
     }
+  }
+}
+
+/// What is constant of rigid molecules of three sites, each in its lane.
+void MoleculeLanes::lay_triangles(Kind& kind, const ParticleSystem<double>& s) const {
+  const auto count = static_cast<Index>(kind.molecules.size());
+  kind.triangles.resize(at(kind.alike ? 1 : kind.packs));
+  for (Index slot = 0; slot < std::ssize(kind.triangles) * RigidTriangles::lanes; ++slot) {
+    const Molecule& molecule = molecules_[at(kind.molecules[at(std::min(slot, count - 1))])];
+    std::array<double, 3> inverse{};
+    for (std::size_t a = 0; a < 3; ++a) inverse[a] = 1 / s.masses()[molecule.particles[a]];
+    put_triangle(kind.triangles[at(slot / RigidTriangles::lanes)], static_cast<int>(slot % RigidTriangles::lanes),
+                 inverse, sides2(molecule));
   }
 }
 
@@ -282,7 +294,7 @@ template <class Work> void MoleculeLanes::for_packs(const Work& work) {
             .atoms = atoms,
             .side_by_side = kind.side_by_side,
             .in_a_row = kind.side_by_side && full && atoms[kind.lanes - 1] - atoms[0] == lists.atoms * (kind.lanes - 1),
-            .triangle = kind.triangle ? &*kind.triangle : nullptr,
+            .triangles = kind.triangles.empty() ? nullptr : &kind.triangles[at(kind.alike ? 0 : p)],
             .path = kind.path ? &path : nullptr,
             .segments = kind.in_segments ? &in_segments : nullptr,
             .tree = kind.tree.data(),
