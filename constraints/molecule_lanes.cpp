@@ -5,6 +5,7 @@
 #include "constraints/molecule_kernels_simd.hpp"
 #include "constraints/partition.hpp"
 #include "constraints/rigid_triangle.hpp"
+#include "constraints/velocity_passes.hpp"
 #include "numbers/parallel.hpp"
 
 #include <fmt/format.h>
@@ -21,6 +22,8 @@ namespace {
 
 /// Smaller trees are solved quicker as molecules of any shape, sixteen of them side by side.
 constexpr std::size_t least_tree = 8;
+/// Of masses: cofactors of nearly singular blocks lose more digits than elimination entry by entry.
+constexpr double most_ratio_of_tree = 1e7;
 constexpr int segments = 16;
 /// Constraints that a thread takes at a time.
 constexpr Index share_of_thread = 256;
@@ -165,6 +168,9 @@ void MoleculeLanes::choose_kernels(Kind& kind, const ParticleSystem<double>& s) 
   const Molecule& first = molecules_[at(kind.molecules.front())];
   const std::size_t constraints = first.pairs.size();
   std::vector<double> inverse = inverse_masses(first, s);
+  const auto [least, most] = std::minmax_element(inverse.begin(), inverse.end());
+  const double ratio = *most / *least;
+  kind.passes = velocity_passes(ratio);
   if (info.lanes == newton_in_lanes) kind.path = bond_path(first.pairs, inverse);
   if (info.lanes != nullptr && constraints > at(info.lanes().most_constraints)) {
     kind.kernels = segment_lanes;
@@ -176,7 +182,7 @@ void MoleculeLanes::choose_kernels(Kind& kind, const ParticleSystem<double>& s) 
   if (kind.kernels == nullptr) kind.kernels = info.triangles;  // of molecules that will be refused
   kind.elimination.emplace(first.pairs, std::move(inverse));
   if (kind.kernels == newton_in_lanes) {
-    if (!kind.path && constraints >= least_tree) kind.tree = tree_centers(kind.lists());
+    if (!kind.path && constraints >= least_tree && ratio <= most_ratio_of_tree) kind.tree = tree_centers(kind.lists());
     if (kind.path) kind.kernels = path_lanes;
     if (!kind.tree.empty()) kind.kernels = tree_lanes;
   }
@@ -300,6 +306,7 @@ template <class Work> void MoleculeLanes::for_packs(const Work& work) {
             .tree = kind.tree.data(),
             .preconditioner = &preconditioner,
             .lengths2 = kind.lengths2.data() + (kind.alike ? 0 : p * 2 * lists.constraints * kind.lanes),
+            .passes = kind.passes,
             .scratch = scratch.data()};
         work(kernels, pack, reports_[at(kind.first_report + p)]);
       }
@@ -337,7 +344,10 @@ MoleculeLanes::Solved MoleculeLanes::solved() const {
   for (const Kind& kind : kinds_) {
     for (Index p = 0; p < kind.packs; ++p) {
       const MoleculeReport& report = reports_[at(kind.first_report + p)];
-      solved.sweeps = std::max<std::int64_t>(solved.sweeps, report.sweeps);
+      if (report.sweeps > solved.sweeps) {
+        solved.sweeps = report.sweeps;
+        solved.before = report.before, solved.after = report.after;
+      }
       for (Index lane = 0; report.open >> lane != 0; ++lane) {
         if ((report.open >> lane & 1U) != 0)
           solved.open.push_back(kind.molecules[at(p * kind.molecules_of_pack() + lane)]);

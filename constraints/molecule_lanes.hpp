@@ -40,6 +40,7 @@ class MoleculeLanes {
 
   struct Solved {
     std::int64_t sweeps = 0;       ///< the most that a molecule needed
+    double before = 0, after = 0;  ///< the violation before and after these; 0: nobody has looked
     std::vector<Index> open = {};  ///< molecules that are not solved: they are left where they were
   };
   /// The position stage. @param start  positions before free motion  @param x  where it ends; in a periodic box what
@@ -71,6 +72,7 @@ class MoleculeLanes {
     std::vector<TreeCenter> tree = {};  ///< of molecules that kernels for trees solve
     MoleculeKernelsInUse* kernels = nullptr;
     int lanes = 8;
+    int passes = 2;                             ///< of velocity stages of Newton's method
     bool in_segments = false;                   ///< each molecule fills the lanes of a pack
     AlignedVector<double> segment_masses = {};  ///< inverse masses, shape (atoms, lanes)
     std::vector<std::int32_t> atoms = {};       ///< shape (packs, atoms of a lane, lanes)

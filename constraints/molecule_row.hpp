@@ -61,6 +61,7 @@ struct MoleculePack {
   const PreconditionerLists* preconditioner;  ///< for those who need one
   const double* lengths2;  ///< squared, in the order of elimination (along a path), then 1 / squared, shape (2,
                            ///< constraints, lanes)
+  int passes;              ///< of a velocity stage of Newton's method
   double* scratch;         ///< of the thread: doubles a lane, `molecule_scratch` and what the kernels ask for
 };
 
@@ -82,6 +83,8 @@ struct MoleculeTask {
 struct MoleculeReport {
   unsigned open = 0;  ///< a bit for each lane that is not solved; it is left where it was
   int sweeps = 0;
+  /// The largest relative violation that the first of these met, and that the last one left; 0: nobody has looked.
+  double before = 0, after = 0;
 };
 
 /// The stages of a solver in lanes.

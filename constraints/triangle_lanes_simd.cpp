@@ -1,6 +1,8 @@
 #include "constraints/molecule_kernels_simd.hpp"
 #include "constraints/molecule_stage_simd.hpp"
 
+#include <limits>
+
 namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
@@ -173,7 +175,7 @@ MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, co
   }
   const Flags<P> idle = idle_lanes<P>(pack);
   const Flags<P> hard = but_not(either(exceeds(before, same<P>(hard_start)), exceeds(after, same<P>(settled))), idle);
-  MoleculeReport report{bits_of(hard), closed_form ? 1 : newton_steps};
+  const MoleculeReport report{.open = bits_of(hard), .sweeps = closed_form ? 1 : newton_steps};
   const double inverse_h = 1 / task.h;
   put<P>(pack, moved, either(hard, idle), slots, [&](int a) {
     return PositionRow{c.x[a], c.v[a], inverse_h, c.magic[a]};
@@ -182,7 +184,7 @@ MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, co
 }
 
 /// The constant inverse, twice: what the first time leaves is known from scalar products.
-template <int P> void project_pack(const MoleculePack& pack, const MoleculeColumns& c) {
+template <int P> MoleculeReport project_pack(const MoleculePack& pack, const MoleculeColumns& c) {
   const RigidTriangles& t = *pack.triangles;
   double* const slots = pack.scratch;
   const double* const velocities[3] = {c.v[0], c.v[1], c.v[2]};
@@ -203,7 +205,12 @@ template <int P> void project_pack(const MoleculePack& pack, const MoleculeColum
   l = {l.a + more.a, l.b + more.b, l.c + more.c};
   Atoms<P> moved;
   push<P>(t, r1, r2, l, moved);
-  put<P>(pack, moved, idle_lanes<P>(pack), slots, [&](int a) { return VelocityRow{c.v[a]}; });
+  // Velocities that are no numbers are left to those who name them.
+  const Flags<P> idle = idle_lanes<P>(pack);
+  const Pack<P> all = absolute(l.a) + (absolute(l.b) + absolute(l.c));
+  const Flags<P> lost = but_not(exceeds(all, same<P>(std::numeric_limits<double>::max())), idle);
+  put<P>(pack, moved, either(lost, idle), slots, [&](int a) { return VelocityRow{c.v[a]}; });
+  return {.open = bits_of(lost)};
 }
 
 template <bool closed_form>
@@ -211,8 +218,7 @@ MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& 
   return solve_pack<8, closed_form>(pack, columns, task);
 }
 MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask&) {
-  project_pack<8>(pack, columns);
-  return {};
+  return project_pack<8>(pack, columns);
 }
 
 }  // namespace
