@@ -41,4 +41,13 @@ Minimized minimize_start(Scene& scene) {
   return minimize(scene.particles, forces, constraints_of(scene), *scene.minimize);
 }
 
+void begin_at_minimum(Scene& scene) {
+  if (!scene.minimize) return;
+  const Minimized found = minimize_start(scene);
+  if (found.converged()) return;
+  throw SceneError(
+      fmt::format("the scene asks for a minimum to begin at, but none is found: {}", found.failure->message),
+      {.file = scene.source.file, .key = "minimize"});
+}
+
 }  // namespace noether
