@@ -105,11 +105,9 @@ template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
     added.name = fmt::format("{}_{}", base, k);
   }
   if (added.schedule.steps == 0 && added.schedule.wall == 0) schedule_by_time(added);
-  if (added.schedule.after && raw_.clock().mode() == ClockMode::fixed) {
-    const Clock<Real>& clock = raw_.clock();
-    added.schedule.first =
-        detail::first_multiple(*added.schedule.after, clock.start(), clock.dt(), added.schedule.steps);
-    added.schedule.after.reset();  // steps tell from here on
+  if (added.schedule.after && raw_.clock().mode() == ClockMode::fixed) {  // steps tell from here on
+    added.schedule.first = detail::first_multiple(*std::exchange(added.schedule.after, {}), raw_.clock().start(),
+                                                  raw_.clock().dt(), added.schedule.steps);
   }
   check_wanted(added);
 }
@@ -137,14 +135,10 @@ template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) 
   }
   if (raw_.clock().mode() == ClockMode::free) {
     // One that comes late has nothing to say of times that have passed.
-    const double passed = std::floor((time() - raw_.clock().start()) / interval);
+    const double from = has_begun(added, time()) ? time() : *added.schedule.after;
+    const double passed = std::floor((from - raw_.clock().start()) / interval);
     if (passed > 0 && passed < 9e15) added.observed = static_cast<std::int64_t>(passed);
-    while (raw_.clock().is_later(time(), next_look(added))) ++added.observed;
-    if (!added.schedule.after) return;
-    const double before = std::floor((*added.schedule.after - raw_.clock().start()) / interval) - 1;
-    if (before > static_cast<double>(added.observed) && before < 9e15)
-      added.observed = static_cast<std::int64_t>(before);
-    while (!has_begun(added, next_look(added))) ++added.observed;
+    while (raw_.clock().is_later(from, next_look(added))) ++added.observed;
     return;
   }
   const std::int64_t steps = steps_in(interval);

@@ -46,7 +46,7 @@ void begin_at_minimum(Scene& scene) {
   const Minimized found = minimize_start(scene);
   if (found.converged()) return;
   throw SceneError(
-      fmt::format("the scene asks for a minimum to begin at, but none is found: {}", found.failure->message),
+      fmt::format("[minimize] has no minimum for the run to begin at: none is found: {}", found.failure->message),
       {.file = scene.source.file, .key = "minimize"});
 }
 
