@@ -170,7 +170,7 @@ void MoleculeLanes::choose_kernels(Kind& kind, const ParticleSystem<double>& s) 
   std::vector<double> inverse = inverse_masses(first, s);
   const auto [least, most] = std::minmax_element(inverse.begin(), inverse.end());
   const double ratio = *most / *least;
-  kind.passes = velocity_passes(ratio);
+  if (info.lanes == newton_in_lanes) kind.passes = velocity_passes(ratio);
   if (info.lanes == newton_in_lanes) kind.path = bond_path(first.pairs, inverse);
   if (info.lanes != nullptr && constraints > at(info.lanes().most_constraints)) {
     kind.kernels = segment_lanes;
@@ -334,6 +334,9 @@ MoleculeLanes::Solved MoleculeLanes::project_velocities(ParticleSystem<double>& 
   const MoleculeColumns columns = columns_of(s, std::as_const(s).positions(), nullptr, s.velocities());
   for_packs([&, task = task(h)](const MoleculeKernels& kernels, const MoleculePack& pack, MoleculeReport& report) {
     report = kernels.project_velocities(pack, columns, task);
+    // Multipliers of a light atom between heavy ones cancel: what rounding leaves of their sum is taken away anew.
+    for (int again = 2; again < pack.passes; ++again)
+      report.open |= kernels.project_velocities(pack, columns, task).open;
   });
   return solved();
 }
