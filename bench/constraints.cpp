@@ -2,8 +2,10 @@
 ///
 /// The position stage, free motion with it, and the velocity stage of molecules at 300 K without forces, 2 fs, one
 /// thread: 512 rigid waters (SPC/E), 256 decanes with all bonds rigid (united atoms, 9 bonds, and all atoms, 31) and
-/// with those of hydrogens alone (22), 256 rings of six carbons with their hydrogens (18 bonds), 256 chains of 100
-/// bonds, and chains of 10, 100 and 10 000 bonds, one of each.
+/// with those of hydrogens alone (22), 16 peptides of 239 atoms with those of their hydrogens (`hydrogen_bonds`, from
+/// `bench/structures/peptide.data`), 256 rings of six carbons with their hydrogens (18 bonds), 256 chains of 100
+/// bonds, and chains of 10, 100 and 10 000 bonds, one of each. `water_as_started` are the waters with lengths of their
+/// own, which differ in last digits, as where they are taken from positions.
 ///
 /// Protocol: 20 slices, all cases in turn; medians of processor times. A slice is so many times ten steps from the
 /// start. `cost_scaling` is the cost of a bond in the chain of 10 000 over that in the chain of 100, slice by slice.
@@ -14,6 +16,8 @@
 
 #include "constraints/constraint_solver.hpp"
 #include "constraints/distance.hpp"
+#include "constraints/structure_constraints.hpp"
+#include "io/structure.hpp"
 
 #include <random>
 
@@ -23,6 +27,7 @@ namespace {
 
 constexpr double step = 0.002;  // [ps]
 constexpr int steps_of_round = 10;
+constexpr double lattice = 2.1;  ///< of molecules [nm]; no power of two, which would leave differences as they are
 
 struct Case {
   std::string name;
@@ -71,13 +76,15 @@ struct Molecule {
 };
 
 /// `count` copies on a lattice, at 300 K.
-Case made(std::string name, const Molecule& molecule, Index count, const ConstraintOptions& options) {
+/// @param own_lengths  whether lengths are those between atoms where they stand, not those of the molecule
+Case made(std::string name, const Molecule& molecule, Index count, const ConstraintOptions& options,
+          bool own_lengths = false) {
   std::mt19937 random(1);
   ParticleSystem<double> s(unit_system("molecular"));
   ConstraintSet set(options);
   for (Index m = 0; m < count; ++m) {
-    const Vec3<double> x(2.0 * static_cast<double>(m % 8), 2.0 * static_cast<double>(m / 8 % 8),
-                         2.0 * static_cast<double>(m / 64));
+    const Vec3<double> x(lattice * static_cast<double>(m % 8), lattice * static_cast<double>(m / 8 % 8),
+                         lattice * static_cast<double>(m / 64));
     for (std::size_t a = 0; a < molecule.atoms.size(); ++a) {
       std::normal_distribution<double> normal(0, std::sqrt(units::molecular::k_B * 300 / molecule.masses[a]));
       const double u = normal(random), v = normal(random), w = normal(random);
@@ -89,7 +96,7 @@ Case made(std::string name, const Molecule& molecule, Index count, const Constra
     for (const auto& [a, b] : molecule.bonds) {
       const double length =
           (molecule.atoms[static_cast<std::size_t>(a)] - molecule.atoms[static_cast<std::size_t>(b)]).norm();
-      set.add(s, Distance{.length = length}, {atoms * m + a, atoms * m + b});
+      set.add(s, own_lengths ? Distance{} : Distance{.length = length}, {atoms * m + a, atoms * m + b});
     }
   }
   ConstraintSolver<double> solver(set);
@@ -159,6 +166,18 @@ Molecule decane_hydrogens() {
   return m;
 }
 
+/// Bonds of hydrogens of a peptide, as long as they are in its file.
+Molecule peptide_hydrogens() {
+  const UnitSystem units = unit_system("molecular");
+  const ParticleSystem<double> read =
+      io::read_structure(NOETHER_SOURCE_DIR "/bench/structures/peptide.data", {.units = &units, .file_units = "real"});
+  Molecule m;
+  for (Index i = 0; i < read.size(); ++i) m.add(read.masses()[i], read.positions()[i]);
+  for (const HeldDistance& held : held_distances(read, RigidTerms::hydrogen_bonds, HeldLengths::start))
+    m.bonds.emplace_back(held.particles[0], held.particles[1]);
+  return m;
+}
+
 /// A solver at its usual settings.
 struct Solver {
   std::string name;
@@ -208,15 +227,18 @@ int main(int count, char** arguments) {
                                                                 {"decane_united", chain(9)},
                                                                 {"decane", decane()},
                                                                 {"decane_hydrogens", decane_hydrogens()},
+                                                                {"peptide_hydrogens", peptide_hydrogens()},
                                                                 {"cyclohexane", ring()}};
   for (const auto& [name, molecule] : molecules) {
     for (const Solver& solver : all_solvers()) {
       const bool series = info_of(solver.options.solver).end == SolverEnd::order;
       if (name == "water" && series) continue;  // of triangles they need so many powers that nobody uses them
-      cases.push_back(made(name + "/" + solver.name, molecule, name == "water" ? 512 : 256, solver.options));
+      const Index copies = name == "water" ? 512 : name == "peptide_hydrogens" ? 16 : 256;
+      cases.push_back(made(name + "/" + solver.name, molecule, copies, solver.options));
     }
   }
   cases.push_back(made("water/settle", water(), 512, {.solver = ConstraintMethod::settle}));
+  cases.push_back(made("water_as_started/newton", water(), 512, {}, true));
   cases.push_back(made("chains/newton", chain(100), 256, {}));
   for (Case& one : cases) {  // warm-up
     one.slice();

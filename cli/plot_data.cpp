@@ -71,7 +71,12 @@ std::vector<io::MonitorSeries> drawn_monitors(const std::filesystem::path& file)
     return quantity == "relative_error" || quantity == "worst" ||
            (!error && (quantity == "value" || quantity == "lag" || quantity == "distance"));
   };
-  return io::read_monitors(file, {.wanted = drawn, .most_numbers = 20'000'000});
+  // Of means over the run the last one is drawn.
+  const auto last_alone = [](const std::string& monitor) {
+    return monitor.starts_with("dihedrals") || monitor.starts_with("radial_distribution") ||
+           monitor.starts_with("mean_square_displacement");
+  };
+  return io::read_monitors(file, {.wanted = drawn, .most_numbers = 20'000'000, .last_alone = last_alone});
 }
 
 ParticleLinks links_in(const std::filesystem::path& file, const PlotSource& source, const UnitSystem& units,

@@ -216,6 +216,7 @@ SceneTable every() {
               {"every", "number", "time", "", "time between two samples, rounded to a whole number of steps"},
               {"steps", "whole number", "1", "", "steps between two samples"},
               {"times", "list", "time", "", "samples at these times only; or the name of a file with one time a line"},
+              {"after", "number", "time", "", "with `every` or `steps`: no samples before this time of the clock"},
               {"wall", "text", "1", "", "of `checkpoint`: wall time between two checkpoints, such as \"5 min\""}})};
 }
 

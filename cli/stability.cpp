@@ -4,6 +4,7 @@
 #include "io/files.hpp"
 #include "numbers/error.hpp"
 #include "numbers/progress.hpp"
+#include "scene/minimize.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
 #include "study/stability.hpp"
@@ -41,7 +42,8 @@ std::string write_report(const std::filesystem::path& folder, const char* json_n
 }
 
 void search_scene(const StabilityArguments& given, const Parts& parts) {
-  const Scene scene = load_scene(given.scene, parts, given.sets);
+  Scene scene = load_scene(given.scene, parts, given.sets);
+  begin_at_minimum(scene);
   tell_notes_and_warnings(scene);
   TerminalLine line(!given.json);
   StabilityOptions options;

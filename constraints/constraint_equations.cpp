@@ -250,6 +250,12 @@ template <class Real> bool ConstraintEquations<Real>::on_this_side(Index* equati
   return true;
 }
 
+template <class Real> void ConstraintEquations<Real>::measure(double before, double after, std::int64_t iterations) {
+  if (iterations == 0 || !(after > 0) || !(before > after) || !std::isfinite(before)) return;
+  work_.measured += iterations;
+  work_.log += std::log(after / before);
+}
+
 template <class Real>
 void ConstraintEquations<Real>::fail(const ParticleSystem<Real>& s, Index equation, const std::string& what) {
   const ConstraintPlace place = set_.place(equation);

@@ -101,10 +101,12 @@ template <class Real> class ConstraintEquations {
   void fail(const Failure& failure) { failure_ = failure; }
   void forget_failure() { failure_.reset(); }
   /// Steps and sweeps of solvers so far.
-  std::int64_t iterations() const { return iterations_; }
-  void count_iteration() { ++iterations_; }
-  void count_iterations(std::int64_t more) { iterations_ += more; }
-  void restore_iterations(std::int64_t iterations) { iterations_ = iterations; }
+  const ConstraintWork& work() const { return work_; }
+  void count_iteration() { ++work_.iterations; }
+  void count_iterations(std::int64_t more) { work_.iterations += more; }
+  /// Tells what so many iterations of a position stage have made of its largest violation; they are counted already.
+  void measure(double before, double after, std::int64_t iterations);
+  void restore(const ConstraintWork& work) { work_ = work; }
 
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
@@ -125,7 +127,7 @@ template <class Real> class ConstraintEquations {
   VectorColumn<Real> start_;  ///< before a position stage
   VectorColumn<Real> moved_;  ///< in a periodic box: from the start of a position stage to its end
   std::optional<Failure> failure_;
-  std::int64_t iterations_ = 0;
+  ConstraintWork work_;
 };
 
 }  // namespace noether

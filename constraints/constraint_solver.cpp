@@ -42,6 +42,30 @@ ConstraintSolver<Real>::ConstraintSolver(const ConstraintSolver& other)
       others_(other.others_ ? std::make_unique<ConstraintEquations<Real>>(*other.others_) : nullptr),
       stages_(other.stages_ ? stages_for(moving()) : nullptr) {}
 
+/// In 113 bits some solvers give way to Newton's method, which is exact there.
+template <class Real> double ConstraintSolver<Real>::tolerance() const {
+  constexpr MakeConstraintStages<Quad>* newton = newton_constraints<Quad>;
+  const bool exact = std::is_same_v<Real, Quad> && info_of(set().options().solver).make_quad == newton;
+  return exact ? 0 : set().tolerance();
+}
+
+template <class Real> void ConstraintSolver<Real>::save_work(SavedState& saved, const std::string& prefix) const {
+  save_value(saved, prefix + "iterations", work().iterations);
+  save_value(saved, prefix + "measured", work().measured);
+  save_value(saved, prefix + "log", work().log);
+}
+
+/// Checkpoints of earlier versions have iterations alone.
+template <class Real> void ConstraintSolver<Real>::load_work(const SavedState& saved, const std::string& prefix) {
+  ConstraintWork work;
+  load_value(saved, prefix + "iterations", work.iterations);
+  if (saved.contains(prefix + "measured")) {
+    load_value(saved, prefix + "measured", work.measured);
+    load_value(saved, prefix + "log", work.log);
+  }
+  restore(work);
+}
+
 template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s) {
   if (s.low_words() != nullptr) {
     throw BadConstraints(
@@ -57,7 +81,7 @@ template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s)
   check_start(s);
   check_independent(s);
   start_on_constraints(s);
-  moving().restore_iterations(0);
+  moving().restore({});
 }
 
 template <class Real> void ConstraintSolver<Real>::check_served(const ParticleSystem<Real>& s) const {
@@ -180,6 +204,7 @@ bool ConstraintSolver<Real>::solve_in_lanes(ParticleSystem<Real>& s, VectorColum
     const VectorColumn<double>& start = s.box().is_periodic() ? std::as_const(s).positions() : moving().start();
     const MoleculeLanes::Solved solved = lanes_.solve_positions(s, start, x, s.velocities(), h);
     moving().count_iterations(solved.sweeps);
+    moving().measure(solved.before, solved.after, solved.sweeps);
     return std::all_of(solved.open.begin(), solved.open.end(),
                        [&](Index molecule) { return solve_alone(molecule, s, x, h); });
   } else {
@@ -212,7 +237,7 @@ struct MoleculeAlone {
   }
   /// Velocities go back, and a failure, under the numbers of the system. @return whether there is none
   bool end(const std::vector<Index>& molecule, ParticleSystem<double>& s, ConstraintEquations<double>& all) const {
-    all.count_iterations(equations.iterations());
+    all.count_iterations(equations.work().iterations);
     if (!equations.failure()) {
       for (std::size_t k = 0; k < molecule.size(); ++k)
         s.velocities().set(molecule[k], particles.velocities()[static_cast<Index>(k)]);

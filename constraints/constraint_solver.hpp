@@ -4,11 +4,13 @@
 #include "constraints/constraint_equations.hpp"
 #include "constraints/constraint_stages.hpp"
 #include "constraints/molecule_lanes.hpp"
+#include "engine/saved_state.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace noether {
@@ -34,6 +36,8 @@ template <class Real> class ConstraintSolver {
   ~ConstraintSolver() = default;
 
   const ConstraintSet& set() const { return equations_.set(); }
+  /// The relative violation that is left on purpose; 0: rounding of these numbers.
+  double tolerance() const;
 
   /// Takes the particles as they are and, at the start of a run, moves positions and velocities onto the constraints.
   /// @throws BadConstraints  naming the constraint that is violated by more than 1e-6, one of mass 0, constraints that
@@ -54,8 +58,11 @@ template <class Real> class ConstraintSolver {
   const std::optional<Failure>& failure() const { return moving().failure(); }
   void forget_failure() { moving().forget_failure(); }
   /// Chord and Newton steps, or sweeps, so far: of each stage the most that a molecule needed.
-  std::int64_t iterations() const { return moving().iterations(); }
-  void restore_iterations(std::int64_t iterations) { moving().restore_iterations(iterations); }
+  std::int64_t iterations() const { return work().iterations; }
+  const ConstraintWork& work() const { return moving().work(); }
+  void restore(const ConstraintWork& work) { moving().restore(work); }
+  void save_work(SavedState& saved, const std::string& prefix) const;
+  void load_work(const SavedState& saved, const std::string& prefix);
 
  private:
   using Vector = typename ConstraintMatrix<Real>::Vector;

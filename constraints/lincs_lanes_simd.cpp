@@ -108,7 +108,7 @@ MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, co
   const unsigned open = end<P>(pack, s, lost, [&](int a) {
     return PositionRow{c.x[a], c.v[a], inverse_h, c.magic[a]};
   });
-  return {open, (task.iterations + 1) * task.order};
+  return {.open = open, .sweeps = (task.iterations + 1) * task.order};
 }
 
 template <int P>
@@ -129,7 +129,7 @@ MoleculeReport project_pack(const MoleculePack& pack, const MoleculeColumns& c, 
     store(load<P>(found + k * P), s.lambda + k * P);
   }
   const unsigned open = end<P>(pack, s, lost, [&](int a) { return VelocityRow{c.v[a]}; });
-  return {open, task.order};
+  return {.open = open, .sweeps = task.order};
 }
 
 MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask& task) {

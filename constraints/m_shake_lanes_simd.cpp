@@ -106,6 +106,7 @@ template <int P> MoleculeReport solve_pack(const MoleculePack& pack, const Molec
   MoleculeReport report;
   const Flags<P> idle = idle_lanes<P>(pack);
   Pack<P> worst = look<P>(pack, s, m);
+  const Pack<P> first = worst;
   Flags<P> hard = but_not(exceeds(worst, same<P>(hard_start)), idle);
   Flags<P> open = but_not(exceeds(worst, same<P>(settled)), either(hard, idle));
   while (any(open) && report.sweeps < most_steps) {
@@ -126,7 +127,9 @@ template <int P> MoleculeReport solve_pack(const MoleculePack& pack, const Molec
   }
   hard = but_not(either(either(hard, open), turned_over<P>(s, m)), idle);
   report.open = bits_of(hard);
-  leave_out<P>(pack, either(hard, idle), s);
+  const Flags<P> out = either(hard, idle);
+  report.before = largest_but<P>(out, first), report.after = largest_but<P>(out, worst);
+  leave_out<P>(pack, out, s);
   const double inverse_h = 1 / h;
   put<P>(pack, s, [&](int a) { return PositionRow{c.x[a], c.v[a], inverse_h, c.magic[a]}; });
   return report;
@@ -155,7 +158,7 @@ template <int P> MoleculeReport project_pack(const MoleculePack& pack, const Mol
   }
   leave_out<P>(pack, either(lost, idle), s);
   put<P>(pack, s, [&](int a) { return VelocityRow{c.v[a]}; });
-  return {bits_of(but_not(lost, idle)), 0};
+  return {.open = bits_of(but_not(lost, idle))};
 }
 
 MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask& task) {

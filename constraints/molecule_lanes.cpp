@@ -5,6 +5,7 @@
 #include "constraints/molecule_kernels_simd.hpp"
 #include "constraints/partition.hpp"
 #include "constraints/rigid_triangle.hpp"
+#include "constraints/velocity_passes.hpp"
 #include "numbers/parallel.hpp"
 
 #include <fmt/format.h>
@@ -21,6 +22,8 @@ namespace {
 
 /// Smaller trees are solved quicker as molecules of any shape, sixteen of them side by side.
 constexpr std::size_t least_tree = 8;
+/// Of masses: cofactors of nearly singular blocks lose more digits than elimination entry by entry.
+constexpr double most_ratio_of_tree = 1e7;
 constexpr int segments = 16;
 /// Constraints that a thread takes at a time.
 constexpr Index share_of_thread = 256;
@@ -80,20 +83,19 @@ std::optional<MoleculeLanes::Molecule> MoleculeLanes::molecule_of(const Constrai
   return molecule;
 }
 
-/// What is constant of molecules of three sites, all of them alike.
-std::optional<RigidTriangle> MoleculeLanes::triangle_of(const std::vector<Index>& molecules,
-                                                        const ParticleSystem<double>& s) const {
-  const Molecule& first = molecules_[at(molecules.front())];
-  const bool alike = std::all_of(molecules.begin(), molecules.end(),
-                                 [&](Index m) { return molecules_[at(m)].lengths == first.lengths; });
-  if (first.particles.size() != 3 || first.pairs.size() != 3 || !alike) return {};
-  std::array<double, 3> inverse_masses{}, lengths2{};
-  for (std::size_t a = 0; a < 3; ++a) inverse_masses[a] = 1 / s.masses()[first.particles[a]];
+std::array<double, 3> MoleculeLanes::sides2(const Molecule& molecule) {
+  std::array<double, 3> sides2{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto [a, b] = first.pairs[k];
-    lengths2[static_cast<std::size_t>(a + b - 1)] = first.lengths[k] * first.lengths[k];  // 0-1, 0-2, 1-2
+    const auto [a, b] = molecule.pairs[k];
+    sides2[static_cast<std::size_t>(a + b - 1)] = molecule.lengths[k] * molecule.lengths[k];
   }
-  return rigid_triangle(inverse_masses, lengths2);
+  return sides2;
+}
+
+Index MoleculeLanes::packs() const {
+  Index packs = 0;
+  for (const Kind& kind : kinds_) packs += kind.packs;
+  return packs;
 }
 
 ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSystem<double>& s) {
@@ -113,10 +115,6 @@ ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSys
     for (const Index i : molecule->particles) what.push_back(s.masses()[i]);
     for (const auto& [a, b] : molecule->pairs)
       what.insert(what.end(), {static_cast<double>(a), static_cast<double>(b)});
-    // Kernels for triangles are for equal lengths: which of them serves a molecule must not depend on others.
-    const bool triangle = molecule->particles.size() == 3 && molecule->pairs.size() == 3;
-    if (triangle && info.triangles != info.lanes)
-      what.insert(what.end(), molecule->lengths.begin(), molecule->lengths.end());
     if (info.equal_lengths)
       std::transform(molecule->lengths.begin(), molecule->lengths.end(), std::back_inserter(what),
                      Preconditioner::near);
@@ -137,9 +135,11 @@ ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSys
   for (std::size_t e = 0; e < left.size(); ++e) {
     if (left[e]) refuse(set.words(static_cast<Index>(e), s));
   }
-  for (const Kind& kind : kinds_) {
-    if (kind.triangle && kind.triangle->isosceles) continue;
-    const std::vector<Index>& tied = molecules_[at(kind.molecules.front())].particles;
+  for (const Molecule& molecule : molecules_) {
+    const std::vector<Index>& tied = molecule.particles;
+    if (molecule.is_triangle() && s.masses()[tied[1]] == s.masses()[tied[2]] &&
+        sides2(molecule)[0] == sides2(molecule)[1])
+      continue;
     refuse(fmt::format("distance of '{}' and '{}'", s.name(tied[0]), s.name(tied[1])));
   }
   return set.only(left);
@@ -147,11 +147,14 @@ ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSys
 
 void MoleculeLanes::add_kind(std::vector<Index> molecules, const ParticleSystem<double>& s) {
   Kind kind{.molecules = std::move(molecules)};
+  const Molecule& first = molecules_[at(kind.molecules.front())];
+  const ConstraintMethodInfo& info = info_of(options_.solver);
   choose_kernels(kind, s);
   if (kind.in_segments) {
     lay_in_segments(kind);
   } else {
     lay_side_by_side(kind);
+    if (first.is_triangle() && info.triangles != info.lanes) lay_triangles(kind, s);
   }
   kind.first_report = static_cast<Index>(reports_.size());
   reports_.resize(reports_.size() + at(kind.packs));
@@ -165,6 +168,9 @@ void MoleculeLanes::choose_kernels(Kind& kind, const ParticleSystem<double>& s) 
   const Molecule& first = molecules_[at(kind.molecules.front())];
   const std::size_t constraints = first.pairs.size();
   std::vector<double> inverse = inverse_masses(first, s);
+  const auto [least, most] = std::minmax_element(inverse.begin(), inverse.end());
+  const double ratio = *most / *least;
+  if (info.lanes == newton_in_lanes) kind.passes = velocity_passes(ratio);
   if (info.lanes == newton_in_lanes) kind.path = bond_path(first.pairs, inverse);
   if (info.lanes != nullptr && constraints > at(info.lanes().most_constraints)) {
     kind.kernels = segment_lanes;
@@ -172,12 +178,11 @@ void MoleculeLanes::choose_kernels(Kind& kind, const ParticleSystem<double>& s) 
     kind.lanes = segments;
     return;
   }
-  kind.triangle = triangle_of(kind.molecules, s);
-  kind.kernels = kind.triangle ? info.triangles : info.lanes;
+  kind.kernels = first.is_triangle() ? info.triangles : info.lanes;
   if (kind.kernels == nullptr) kind.kernels = info.triangles;  // of molecules that will be refused
   kind.elimination.emplace(first.pairs, std::move(inverse));
   if (kind.kernels == newton_in_lanes) {
-    if (!kind.path && constraints >= least_tree) kind.tree = tree_centers(kind.lists());
+    if (!kind.path && constraints >= least_tree && ratio <= most_ratio_of_tree) kind.tree = tree_centers(kind.lists());
     if (kind.path) kind.kernels = path_lanes;
     if (!kind.tree.empty()) kind.kernels = tree_lanes;
   }
@@ -221,6 +226,19 @@ void MoleculeLanes::lay_side_by_side(Kind& kind) const {
       kind.lengths2[at((pack * 2 * n + k) * lanes + lane)] = length * length;
       kind.lengths2[at((pack * 2 * n + n + k) * lanes + lane)] = 1 / (length * length);
     }
+  }
+}
+
+/// What is constant of rigid molecules of three sites, each in its lane.
+void MoleculeLanes::lay_triangles(Kind& kind, const ParticleSystem<double>& s) const {
+  const auto count = static_cast<Index>(kind.molecules.size());
+  kind.triangles.resize(at(kind.alike ? 1 : kind.packs));
+  for (Index slot = 0; slot < std::ssize(kind.triangles) * RigidTriangles::lanes; ++slot) {
+    const Molecule& molecule = molecules_[at(kind.molecules[at(std::min(slot, count - 1))])];
+    std::array<double, 3> inverse{};
+    for (std::size_t a = 0; a < 3; ++a) inverse[a] = 1 / s.masses()[molecule.particles[a]];
+    put_triangle(kind.triangles[at(slot / RigidTriangles::lanes)], static_cast<int>(slot % RigidTriangles::lanes),
+                 inverse, sides2(molecule));
   }
 }
 
@@ -282,12 +300,13 @@ template <class Work> void MoleculeLanes::for_packs(const Work& work) {
             .atoms = atoms,
             .side_by_side = kind.side_by_side,
             .in_a_row = kind.side_by_side && full && atoms[kind.lanes - 1] - atoms[0] == lists.atoms * (kind.lanes - 1),
-            .triangle = kind.triangle ? &*kind.triangle : nullptr,
+            .triangles = kind.triangles.empty() ? nullptr : &kind.triangles[at(kind.alike ? 0 : p)],
             .path = kind.path ? &path : nullptr,
             .segments = kind.in_segments ? &in_segments : nullptr,
             .tree = kind.tree.data(),
             .preconditioner = &preconditioner,
             .lengths2 = kind.lengths2.data() + (kind.alike ? 0 : p * 2 * lists.constraints * kind.lanes),
+            .passes = kind.passes,
             .scratch = scratch.data()};
         work(kernels, pack, reports_[at(kind.first_report + p)]);
       }
@@ -315,6 +334,9 @@ MoleculeLanes::Solved MoleculeLanes::project_velocities(ParticleSystem<double>& 
   const MoleculeColumns columns = columns_of(s, std::as_const(s).positions(), nullptr, s.velocities());
   for_packs([&, task = task(h)](const MoleculeKernels& kernels, const MoleculePack& pack, MoleculeReport& report) {
     report = kernels.project_velocities(pack, columns, task);
+    // Multipliers of a light atom between heavy ones cancel: what rounding leaves of their sum is taken away anew.
+    for (int again = 2; again < pack.passes; ++again)
+      report.open |= kernels.project_velocities(pack, columns, task).open;
   });
   return solved();
 }
@@ -325,7 +347,10 @@ MoleculeLanes::Solved MoleculeLanes::solved() const {
   for (const Kind& kind : kinds_) {
     for (Index p = 0; p < kind.packs; ++p) {
       const MoleculeReport& report = reports_[at(kind.first_report + p)];
-      solved.sweeps = std::max<std::int64_t>(solved.sweeps, report.sweeps);
+      if (report.sweeps > solved.sweeps) {
+        solved.sweeps = report.sweeps;
+        solved.before = report.before, solved.after = report.after;
+      }
       for (Index lane = 0; report.open >> lane != 0; ++lane) {
         if ((report.open >> lane & 1U) != 0)
           solved.open.push_back(kind.molecules[at(p * kind.molecules_of_pack() + lane)]);

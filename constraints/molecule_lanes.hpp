@@ -9,6 +9,7 @@
 #include "constraints/preconditioner.hpp"
 #include "engine/column.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -34,9 +35,12 @@ class MoleculeLanes {
   /// @throws BadConstraints  for a constraint on a particle that is not there, or one that the solver does not serve
   ConstraintSet lay_out(const ConstraintSet& set, const ParticleSystem<double>& s);
   bool empty() const { return kinds_.empty(); }
+  /// How many packs of molecules side by side there are.
+  Index packs() const;
 
   struct Solved {
     std::int64_t sweeps = 0;       ///< the most that a molecule needed
+    double before = 0, after = 0;  ///< the violation before and after these; 0: nobody has looked
     std::vector<Index> open = {};  ///< molecules that are not solved: they are left where they were
   };
   /// The position stage. @param start  positions before free motion  @param x  where it ends; in a periodic box what
@@ -55,17 +59,20 @@ class MoleculeLanes {
     std::vector<Index> particles;
     std::vector<Elimination::Pair> pairs;  ///< of places
     std::vector<double> lengths;           ///< of the pairs
+
+    bool is_triangle() const { return particles.size() == 3 && pairs.size() == 3; }
   };
   /// Molecules side by side, and the kernels that know their shape.
   struct Kind {
     std::vector<Index> molecules;
     std::optional<Elimination> elimination = {};  ///< none of molecules in segments
-    std::optional<RigidTriangle> triangle = {};
-    Preconditioner preconditioner = {};  ///< for those who need one
+    std::vector<RigidTriangles> triangles = {};   ///< of rigid molecules of three sites: shape (packs), or one if alike
+    Preconditioner preconditioner = {};           ///< for those who need one
     std::optional<BondPath> path = {};
     std::vector<TreeCenter> tree = {};  ///< of molecules that kernels for trees solve
     MoleculeKernelsInUse* kernels = nullptr;
     int lanes = 8;
+    int passes = 2;                             ///< of velocity stages of Newton's method
     bool in_segments = false;                   ///< each molecule fills the lanes of a pack
     AlignedVector<double> segment_masses = {};  ///< inverse masses, shape (atoms, lanes)
     std::vector<std::int32_t> atoms = {};       ///< shape (packs, atoms of a lane, lanes)
@@ -84,10 +91,12 @@ class MoleculeLanes {
   static std::vector<double> inverse_masses(const Molecule& molecule, const ParticleSystem<double>& s);
   std::optional<Molecule> molecule_of(const ConstraintSet& set, const Partition& parts, Index component,
                                       const ParticleSystem<double>& s) const;
-  std::optional<RigidTriangle> triangle_of(const std::vector<Index>& molecules, const ParticleSystem<double>& s) const;
+  /// Squared lengths of a molecule of three sites: of 0-1, 0-2 and 1-2.
+  static std::array<double, 3> sides2(const Molecule& molecule);
   void add_kind(std::vector<Index> molecules, const ParticleSystem<double>& s);
   void choose_kernels(Kind& kind, const ParticleSystem<double>& s) const;
   void lay_side_by_side(Kind& kind) const;
+  void lay_triangles(Kind& kind, const ParticleSystem<double>& s) const;
   void lay_in_segments(Kind& kind) const;
   /// Calls `work(kernels, pack, report)` for all packs, by threads.
   template <class Work> void for_packs(const Work& work);

@@ -18,15 +18,19 @@ struct MoleculeColumns {
   double magic[3];  ///< adding and subtracting it rounds to the grid of the box
 };
 
-/// What is constant of a rigid molecule of three sites: bonds r1 from atom 0 to 1 and r2 from 0 to 2.
-struct RigidTriangle {
+/// What is constant of eight rigid molecules of three sites side by side: bonds r1 from atom 0 to 1 and r2 from 0 to 2.
+/// Their masses are the same, their lengths need not be.
+struct RigidTriangles {
+  static constexpr int lanes = 8;
+  using Lanes = double[lanes];
+
+  alignas(64) Lanes c11, c12, c22;  ///< r_i . r_j
+  Lanes inverse_c11;                ///< 1 / c11
+  Lanes inverse[6];                 ///< of the matrix of the bonds 0-1, 0-2, 1-2: 11 12 13 22 23 33
+  /// Of isosceles ones: from the centre of mass to atom 0, and to the middle of the others, and half their distance.
+  Lanes apex, inverse_apex, base, half_base;
   double inverse_mass[3];
-  double c11, c12, c22;  ///< r_i . r_j
-  double inverse[6];     ///< of the matrix of the bonds 0-1, 0-2, 1-2: 11 12 13 22 23 33
-  /// Of an isosceles one: from the centre of mass to atom 0, and to the middle of the others, and half their distance;
-  /// masses of these over all.
-  double apex, base, half_base, part1, part2;
-  bool isosceles;
+  double part1, part2;  ///< of isosceles ones: masses of atoms 1 and 2 over all
 };
 
 /// Molecules whose bonds form one path: bond k leads from atom[k] to atom[k + 1].
@@ -50,13 +54,14 @@ struct MoleculePack {
   const std::int32_t* atoms;                  ///< particle of atom a in lane l: [lanes a + l]
   bool side_by_side;                          ///< atoms of each molecule follow each other in the columns
   bool in_a_row;                              ///< and molecules do
-  const RigidTriangle* triangle;              ///< of rigid molecules of three sites of equal lengths; else null
+  const RigidTriangles* triangles;            ///< of rigid molecules of three sites; else null
   const BondPathRow* path;                    ///< of molecules solved by kernels for paths; else null
   const BondSegmentsRow* segments;            ///< of a molecule that fills a pack by itself; else null
   const TreeCenter* tree;                     ///< of molecules solved by kernels for trees: shape (centers); else null
   const PreconditionerLists* preconditioner;  ///< for those who need one
   const double* lengths2;  ///< squared, in the order of elimination (along a path), then 1 / squared, shape (2,
                            ///< constraints, lanes)
+  int passes;              ///< of a velocity stage of Newton's method
   double* scratch;         ///< of the thread: doubles a lane, `molecule_scratch` and what the kernels ask for
 };
 
@@ -78,6 +83,8 @@ struct MoleculeTask {
 struct MoleculeReport {
   unsigned open = 0;  ///< a bit for each lane that is not solved; it is left where it was
   int sweeps = 0;
+  /// The largest relative violation that the first of these met, and that the last one left; 0: nobody has looked.
+  double before = 0, after = 0;
 };
 
 /// The stages of a solver in lanes.

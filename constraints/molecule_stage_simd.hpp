@@ -75,6 +75,15 @@ struct VelocityRow {
   }
 };
 
+/// The largest number in lanes that are not flagged; 0 if there is none.
+template <int P> HWY_INLINE double largest_but(const Flags<P>& out, const Pack<P>& a) {
+  alignas(64) double lanes[P];
+  store(none_where(out, a), lanes);
+  double most = 0;
+  for (const double one : lanes) most = one > most ? one : most;
+  return most;
+}
+
 template <int P> HWY_INLINE Flags<P> idle_lanes(const MoleculePack& pack) {
   return flags_of<P>(~pack.live & ((1U << P) - 1));
 }

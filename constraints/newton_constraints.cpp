@@ -1,5 +1,7 @@
 #include "constraints/newton_constraints.hpp"
 
+#include "constraints/velocity_passes.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +23,12 @@ constexpr double shortest_stride = 1.0 / 256;
 
 template <class Real>
 NewtonConstraints<Real>::NewtonConstraints(const ConstraintEquations<Real>& equations)
-    : new_(equations.layout().particle.size(), Vec3<Real>::Zero()), free_(equations.start()) {}
+    : new_(equations.layout().particle.size(), Vec3<Real>::Zero()), free_(equations.start()) {
+  const auto& inverse = equations.layout().inverse_mass;
+  if (inverse.empty()) return;
+  const auto [least, most] = std::minmax_element(inverse.begin(), inverse.end());
+  passes_ = velocity_passes(static_cast<double>(*most / *least));
+}
 
 template <class Real>
 bool NewtonConstraints<Real>::prepare(ConstraintEquations<Real>& equations, const ParticleSystem<Real>& s) {
@@ -58,14 +65,17 @@ bool NewtonConstraints<Real>::solve_positions(ConstraintEquations<Real>& equatio
 template <class Real>
 bool NewtonConstraints<Real>::iterate(ConstraintEquations<Real>& equations, const ParticleSystem<Real>& s,
                                       VectorColumn<Real>& x, bool fresh) {
-  double previous = std::numeric_limits<double>::infinity();
+  double previous = std::numeric_limits<double>::infinity(), first = 0;
   for (int k = 0; k < most_iterations; ++k) {
     equations.find_values(equations.seen(s, x));
-    if (equations.settled()) return true;
     Index worst_equation = 0;
     const double violation = equations.worst(&worst_equation);
     const double floor = equations.floor(worst_equation) / equations.scale(worst_equation);
-    if (violation < 64 * floor && violation > previous / 2) return true;  // rounding itself
+    if (k == 0) first = violation;
+    if (equations.settled() || (violation < 64 * floor && violation > previous / 2)) {  // rounding itself
+      equations.measure(first, violation, k);
+      return true;
+    }
     if (!std::isfinite(violation) || (fresh && violation > 4 * previous)) return false;
     fresh = fresh || (k > 0 && violation > slow_contraction * previous && violation > 1000 * floor);
     previous = violation;
@@ -116,12 +126,24 @@ bool NewtonConstraints<Real>::follow(ConstraintEquations<Real>& equations, const
 }
 
 template <class Real>
+bool NewtonConstraints<Real>::has_lost(ConstraintEquations<Real>& equations, const ParticleSystem<Real>& s) const {
+  using std::isfinite;
+  for (Index e = 0; e < equations.size(); ++e) {
+    if (isfinite(equations.values()[e])) continue;
+    equations.fail(s, e, "has a velocity across it that is not a number");
+    return true;
+  }
+  return false;
+}
+
+template <class Real>
 void NewtonConstraints<Real>::project_velocities(ConstraintEquations<Real>& equations, ParticleSystem<Real>& s,
                                                  const Real& /*h*/) {
   Vector& multipliers = equations.values();
   const ConstraintGradients<Real>& here = equations.gradients();
-  for (int pass = 0; pass < 2; ++pass) {  // the second takes away what rounding has left of the first
+  for (int pass = 0; pass < passes_; ++pass) {  // each takes away what rounding has left of the one before
     for (Index e = 0; e < equations.size(); ++e) multipliers[e] = equations.along(e, s.velocities(), here);
+    if (pass == 0 && has_lost(equations, s)) return;
     equations.matrix().solve(multipliers);
     equations.push(s.velocities(), here, multipliers, Real(1));
   }

@@ -24,8 +24,11 @@ template <class Real> class NewtonConstraints final : public ConstraintStages<Re
   bool iterate(ConstraintEquations<Real>& equations, const ParticleSystem<Real>& s, VectorColumn<Real>& x, bool fresh);
   bool follow(ConstraintEquations<Real>& equations, const ParticleSystem<Real>& s, VectorColumn<Real>& x, const Real& h,
               double* reached);
+  /// Fails by the first equation across which velocities are no numbers. @return whether there is one
+  bool has_lost(ConstraintEquations<Real>& equations, const ParticleSystem<Real>& s) const;
   void place(ConstraintEquations<Real>& equations, const Box& box, VectorColumn<Real>& x) const;
 
+  int passes_ = 2;                 ///< of a velocity stage
   ConstraintGradients<Real> new_;  ///< where a position stage has come to
   VectorColumn<Real> free_;        ///< where free motion alone would end
 };

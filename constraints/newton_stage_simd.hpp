@@ -5,6 +5,8 @@
 
 #include "constraints/molecule_multipliers_simd.hpp"
 
+#include <limits>
+
 namespace noether::NOETHER_SIMD_LEVEL {
 namespace {
 
@@ -73,6 +75,7 @@ HWY_INLINE MoleculeReport solve_by_chords(Bonds bonds, const MoleculePack& pack,
   Pack<P> worst = bonds.of_molecule(squares.take_worst(bonds.template sweep<false>(squares)));
   Flags<P> hard = but_not(either(singular, exceeds(worst, same<P>(hard_start))), idle);
   Flags<P> open = but_not(exceeds(worst, same<P>(settled)), either(hard, idle));
+  const Pack<P> first = worst;
   bonds.template step<true>(open);
   while (any(open)) {
     const Pack<P> before = worst;
@@ -87,6 +90,7 @@ HWY_INLINE MoleculeReport solve_by_chords(Bonds bonds, const MoleculePack& pack,
   }
   report.open = bits_of(hard);
   const Flags<P> out = either(hard, idle);
+  report.before = largest_but<P>(out, first), report.after = largest_but<P>(out, worst);
   if (any(out)) bonds.leave_out(out);
   const double inverse_h = 1 / h;
   bonds.put([&](int a) { return PositionRow{c.x[a], c.v[a], inverse_h, c.magic[a]}; });
@@ -94,18 +98,23 @@ HWY_INLINE MoleculeReport solve_by_chords(Bonds bonds, const MoleculePack& pack,
 }
 
 /// The velocity stage.
-template <int P, class Bonds> HWY_INLINE MoleculeReport project_by_factors(Bonds bonds, const MoleculeColumns& c) {
+template <int P, class Bonds>
+HWY_INLINE MoleculeReport project_by_factors(Bonds bonds, const MoleculePack& pack, const MoleculeColumns& c) {
   bonds.find(c);
   const Flags<P> singular = bonds.factorize(), idle = bonds.idle();
   bonds.find_differences(c.v, c.edge, false);
   Rates<P> rates{bonds.vectors()};
-  const Flags<P> solved = but_not(flags_of<P>((1U << P) - 1), either(singular, idle));
-  bonds.template sweep<false>(rates);
+  // Velocities that are no numbers are left to those who name them.
+  const Pack<P> carried = bonds.of_molecule(absolute(bonds.template sweep<false>(rates)));
+  const Flags<P> lost = but_not(either(singular, exceeds(carried, same<P>(std::numeric_limits<double>::max()))), idle);
+  const Flags<P> solved = but_not(flags_of<P>((1U << P) - 1), either(lost, idle));
   bonds.template step<true>(solved);
-  bonds.template sweep<true>(rates);  // the second time takes away what rounding has left of the first
-  bonds.template step<false>(solved);
+  for (int pass = 1; pass < pack.passes; ++pass) {  // each takes away what rounding has left of the one before
+    bonds.template sweep<true>(rates);
+    bonds.template step<false>(solved);
+  }
   bonds.put([&](int a) { return VelocityRow{c.v[a]}; });
-  return {bits_of(but_not(singular, idle)), 0};
+  return {.open = bits_of(lost)};
 }
 
 }  // namespace

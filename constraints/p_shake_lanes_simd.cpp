@@ -57,6 +57,7 @@ HWY_INLINE Flags<P> iterate(const MoleculePack& pack, const Slots<P>& s, const M
   const Pack<P> tolerance = same<P>(task.tolerance);
   Violation<P> now = look();
   Flags<P> open = but_not(exceeds(now.worst, tolerance), idle), lost = flags_of<P>(0);
+  const Pack<P> first = now.worst;
   while (any(open) && report.sweeps < task.iterations) {
     add_multipliers<P>(pack, s, open);
     ++report.sweeps;
@@ -65,7 +66,9 @@ HWY_INLINE Flags<P> iterate(const MoleculePack& pack, const Slots<P>& s, const M
     lost = either(lost, both(open, exceeds(now.worst, before)));
     open = but_not(both(open, exceeds(now.worst, tolerance)), lost);
   }
-  return but_not(either(either(open, lost), now.turned), idle);
+  const Flags<P> wrong = but_not(either(either(open, lost), now.turned), idle), out = either(wrong, idle);
+  report.before = largest_but<P>(out, first), report.after = largest_but<P>(out, now.worst);
+  return wrong;
 }
 
 /// Multipliers into the columns, but not those of some lanes.

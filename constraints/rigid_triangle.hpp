@@ -7,8 +7,10 @@
 
 namespace noether {
 
+/// Writes what is constant of a molecule into a lane of several, whose masses are the same.
 /// @param inverse_masses  of the three atoms
 /// @param lengths2        squared: of 0-1, 0-2 and 1-2
-RigidTriangle rigid_triangle(const std::array<double, 3>& inverse_masses, const std::array<double, 3>& lengths2);
+void put_triangle(RigidTriangles& all, int lane, const std::array<double, 3>& inverse_masses,
+                  const std::array<double, 3>& lengths2);
 
 }  // namespace noether

@@ -272,13 +272,16 @@ template <int P> class SegmentBonds {
 };
 
 /// Lanes of one molecule.
-MoleculeReport together(MoleculeReport report) { return {report.open != 0 ? 1U : 0U, report.sweeps}; }
+MoleculeReport together(MoleculeReport report) {
+  report.open = report.open != 0 ? 1U : 0U;
+  return report;
+}
 
 MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask& task) {
   return together(solve_by_chords<16>(SegmentBonds<16>(pack), pack, columns, task.h));
 }
 MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask&) {
-  return together(project_by_factors<16>(SegmentBonds<16>(pack), columns));
+  return together(project_by_factors<16>(SegmentBonds<16>(pack), pack, columns));
 }
 
 }  // namespace

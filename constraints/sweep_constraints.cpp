@@ -65,10 +65,15 @@ bool SweepConstraints<Real>::solve_positions(ConstraintEquations<Real>& equation
   free_ = x;
   const ConstraintOptions& options = equations.options();
   Worst worst;
+  double first = 0;
   for (Index k = 0; k <= options.most_iterations(); ++k) {
     worst.violation = 0;
     sweep(equations, s, x, worst);
-    if (worst.violation <= options.tolerance) return true;
+    if (k == 0) first = worst.violation;
+    if (worst.violation <= options.tolerance) {
+      equations.measure(first, worst.violation, k);
+      return true;
+    }
     equations.count_iteration();
     if (!std::isfinite(worst.violation)) break;
   }

@@ -13,12 +13,14 @@ template <int P> HWY_INLINE double* corrections(const MoleculePack& pack, const 
 
 /// One constraint after the other, in the order of the set, each in the lanes where `step` says how far; adds step r /
 /// m to its atoms.
+/// @param worst  receives the largest violation; one that is not a number may be lost
 /// @return where a violation is above the tolerance, or is not a number
 template <int P, class Step>
 HWY_INLINE Flags<P> sweep(const MoleculePack& pack, const Slots<P>& s, double* moved, double tolerance,
-                          const Step& step) {
+                          const Step& step, Pack<P>& worst) {
   const EliminationLists p = *pack.kind;
   Flags<P> over = flags_of<P>(0);
+  worst = same<P>(0);
   for (int next = 0; next < p.constraints; ++next) {
     const int k = p.given[next];
     double *const i = moved + 3 * p.i[k] * P, *const j = moved + 3 * p.j[k] * P;
@@ -28,6 +30,7 @@ HWY_INLINE Flags<P> sweep(const MoleculePack& pack, const Slots<P>& s, double* m
     const Pack<P> whole = step(k, r, at, violation);
     const Flags<P> wrong = exceeds(violation, same<P>(tolerance));
     over = either(over, wrong);
+    worst = larger_number(violation, worst);
     const Pack<P> part = only_where(wrong, whole);
     store(add_product(same<P>(p.inverse_mass_i[k]) * part, r, before_i), i);
     store(take_product(same<P>(p.inverse_mass_j[k]) * part, r, before_j), j);
@@ -39,9 +42,14 @@ HWY_INLINE Flags<P> sweep(const MoleculePack& pack, const Slots<P>& s, double* m
 template <int P, class Step>
 HWY_INLINE Flags<P> sweep_all(const MoleculePack& pack, const Slots<P>& s, double* moved, const MoleculeTask& task,
                               MoleculeReport& report, const Step& step) {
+  const Flags<P> idle = idle_lanes<P>(pack);
+  Pack<P> worst;
   while (true) {
-    const Flags<P> open = sweep<P>(pack, s, moved, task.tolerance, step);
-    if (!any(open) || report.sweeps == task.iterations) return open;
+    const Flags<P> open = sweep<P>(pack, s, moved, task.tolerance, step, worst);
+    const bool ends = !any(open) || report.sweeps == task.iterations;
+    if (report.sweeps == 0) report.before = largest_but<P>(idle, worst);
+    if (ends) report.after = largest_but<P>(either(idle, open), worst);
+    if (ends) return open;
     ++report.sweeps;
   }
 }

@@ -1,6 +1,8 @@
 #include "constraints/molecule_kernels_simd.hpp"
 #include "constraints/molecule_stage_simd.hpp"
 
+#include <limits>
+
 namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
@@ -38,15 +40,15 @@ HWY_INLINE void put(const MoleculePack& pack, Atoms<P>& atoms, const Flags<P>& o
 
 /// Three equations by the constant inverse.
 template <int P>
-HWY_INLINE Three<P> solve(const RigidTriangle& t, const Pack<P>& e1, const Pack<P>& e2, const Pack<P>& e3) {
+HWY_INLINE Three<P> solve(const RigidTriangles& t, const Pack<P>& e1, const Pack<P>& e2, const Pack<P>& e3) {
   const auto row = [&](int a, int b, int c) HWY_ATTR {
-    return add_product(same<P>(t.inverse[a]), e1, add_product(same<P>(t.inverse[b]), e2, same<P>(t.inverse[c]) * e3));
+    return add_product(load<P>(t.inverse[a]), e1, add_product(load<P>(t.inverse[b]), e2, load<P>(t.inverse[c]) * e3));
   };
   return {row(0, 1, 2), row(1, 3, 4), row(2, 4, 5)};
 }
 /// M^-1 G^T lambda.
 template <int P>
-HWY_INLINE void push(const RigidTriangle& t, const Vectors<P>& r1, const Vectors<P>& r2, const Three<P>& l,
+HWY_INLINE void push(const RigidTriangles& t, const Vectors<P>& r1, const Vectors<P>& r2, const Three<P>& l,
                      Atoms<P>& out) {
   const Vectors<P> f1 = l.a * r1, f2 = l.b * r2, r3 = r2 - r1;
   out.x[0] = same<P>(-t.inverse_mass[0]) * (f1 + f2);
@@ -58,7 +60,7 @@ HWY_INLINE void push(const RigidTriangle& t, const Vectors<P>& r1, const Vectors
 template <int P> struct Shares {
   Pack<P> a1, b1, a2, b2;
 
-  HWY_INLINE Shares(const RigidTriangle& t, const Three<P>& l) {
+  HWY_INLINE Shares(const RigidTriangles& t, const Three<P>& l) {
     const Pack<P> k1 = same<P>(t.inverse_mass[1]) * l.c, k2 = same<P>(t.inverse_mass[2]) * l.c;
     const Pack<P> w0 = same<P>(t.inverse_mass[0]);
     a1 = add_product(same<P>(t.inverse_mass[0] + t.inverse_mass[1]), l.a, k1);
@@ -71,16 +73,16 @@ template <int P> struct Shares {
 /// Newton's method on what violations depend on: scalar products of the bonds s with the bonds r.
 /// @param before, after  the largest violations, relative to c11, of free motion and of what comes out
 template <int P>
-HWY_INLINE Three<P> solve_newton(const RigidTriangle& t, const Vectors<P>& r1, const Vectors<P>& r2,
+HWY_INLINE Three<P> solve_newton(const RigidTriangles& t, const Vectors<P>& r1, const Vectors<P>& r2,
                                  const Vectors<P>& s1, const Vectors<P>& s2, Pack<P>& before, Pack<P>& after) {
   const Pack<P> p11 = dot(s1, r1), p12 = dot(s1, r2), p21 = dot(s2, r1), p22 = dot(s2, r2);
-  const Pack<P> c11 = same<P>(t.c11), c12 = same<P>(t.c12), c22 = same<P>(t.c22), half = same<P>(0.5);
+  const Pack<P> c11 = load<P>(t.c11), c12 = load<P>(t.c12), c22 = load<P>(t.c22), half = same<P>(0.5);
   const Pack<P> w0 = same<P>(t.inverse_mass[0]), w1 = same<P>(t.inverse_mass[1]), w2 = same<P>(t.inverse_mass[2]);
   const Pack<P> w01 = same<P>(t.inverse_mass[0] + t.inverse_mass[1]),
                 w02 = same<P>(t.inverse_mass[0] + t.inverse_mass[2]);
   const Pack<P> n11 = c11 - dot(s1, s1), n12 = c12 - dot(s1, s2), n22 = c22 - dot(s2, s2);
   const auto largest = [&](const Pack<P>& e1, const Pack<P>& e2, const Pack<P>& e12) HWY_ATTR {
-    return larger(absolute(e1), larger(absolute(e2), absolute(e12))) * same<P>(1 / t.c11);
+    return larger(absolute(e1), larger(absolute(e2), absolute(e12))) * load<P>(t.inverse_c11);
   };
   Pack<P> e1 = half * n11, e2 = half * n22, e12 = n12;
   before = largest(e1, e2, e12);
@@ -116,7 +118,7 @@ HWY_INLINE Three<P> solve_newton(const RigidTriangle& t, const Vectors<P>& r1, c
 /// SETTLE about the centre of mass: what is to be added to the atoms where free motion ends. Where there is no
 /// solution, it is no number. @source MiyamotoKollman1992
 template <int P>
-HWY_INLINE void settle(const RigidTriangle& t, const Vectors<P>& b0, const Vectors<P>& c0, const Vectors<P>& s1,
+HWY_INLINE void settle(const RigidTriangles& t, const Vectors<P>& b0, const Vectors<P>& c0, const Vectors<P>& s1,
                        const Vectors<P>& s2, Atoms<P>& out) {
   const Pack<P> one = same<P>(1), zero = same<P>(0);
   const Pack<P> share1 = same<P>(-t.part1), share2 = same<P>(t.part2);
@@ -128,11 +130,12 @@ HWY_INLINE void settle(const RigidTriangle& t, const Vectors<P>& b0, const Vecto
   const Pack<P> xb0 = dot(x, b0), yb0 = dot(y, b0), xc0 = dot(x, c0), yc0 = dot(y, c0);
   const Pack<P> za1 = dot(z, a1), xb1 = dot(x, b1), yb1 = dot(y, b1), zb1 = dot(z, b1);
   const Pack<P> xc1 = dot(x, c1), yc1 = dot(y, c1), zc1 = dot(z, c1);
-  const Pack<P> sin_phi = same<P>(1 / t.apex) * za1, cos_phi = root(take_product(sin_phi, sin_phi, one));
-  const Pack<P> sin_psi = (zb1 - zc1) / (same<P>(2 * t.half_base) * cos_phi);
+  const Pack<P> sin_phi = load<P>(t.inverse_apex) * za1, cos_phi = root(take_product(sin_phi, sin_phi, one));
+  const Pack<P> half_base = load<P>(t.half_base);
+  const Pack<P> sin_psi = (zb1 - zc1) / ((half_base + half_base) * cos_phi);
   const Pack<P> cos_psi = root(take_product(sin_psi, sin_psi, one));
-  const Pack<P> ya2 = same<P>(t.apex) * cos_phi, xb2 = same<P>(-t.half_base) * cos_psi;
-  const Pack<P> t1 = same<P>(-t.base) * cos_phi, t2 = same<P>(t.half_base) * (sin_psi * sin_phi);
+  const Pack<P> ya2 = load<P>(t.apex) * cos_phi, xb2 = (zero - half_base) * cos_psi;
+  const Pack<P> t1 = (zero - load<P>(t.base)) * cos_phi, t2 = half_base * (sin_psi * sin_phi);
   const Pack<P> yb2 = t1 - t2, yc2 = t1 + t2;
   const Pack<P> alpha = add_product(xb2, xb0 - xc0, add_product(yb0, yb2, yc0 * yc2));
   const Pack<P> beta = add_product(xb2, yc0 - yb0, add_product(xb0, yb2, xc0 * yc2));
@@ -152,7 +155,7 @@ HWY_INLINE void settle(const RigidTriangle& t, const Vectors<P>& b0, const Vecto
 
 template <int P, bool closed_form>
 MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, const MoleculeTask& task) {
-  const RigidTriangle t = *pack.triangle;
+  const RigidTriangles& t = *pack.triangles;
   double* const slots = pack.scratch;
   const double* const ends[3] = {c.x[0], c.x[1], c.x[2]};
   Vectors<P> r1, r2, s1, s2;
@@ -164,15 +167,15 @@ MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, co
   if constexpr (closed_form) {
     settle<P>(t, r1, r2, s1, s2, moved);
     const Vectors<P> e1 = s1 + (moved.x[1] - moved.x[0]), e2 = s2 + (moved.x[2] - moved.x[0]);
-    const Pack<P> inverse = same<P>(0.5 / t.c11);
-    after = larger(absolute(same<P>(t.c11) - dot(e1, e1)), absolute(same<P>(t.c22) - dot(e2, e2))) * inverse;
+    const Pack<P> inverse = same<P>(0.5) * load<P>(t.inverse_c11);
+    after = larger(absolute(load<P>(t.c11) - dot(e1, e1)), absolute(load<P>(t.c22) - dot(e2, e2))) * inverse;
     before = same<P>(0);
   } else {
     push<P>(t, r1, r2, solve_newton<P>(t, r1, r2, s1, s2, before, after), moved);
   }
   const Flags<P> idle = idle_lanes<P>(pack);
   const Flags<P> hard = but_not(either(exceeds(before, same<P>(hard_start)), exceeds(after, same<P>(settled))), idle);
-  MoleculeReport report{bits_of(hard), closed_form ? 1 : newton_steps};
+  const MoleculeReport report{.open = bits_of(hard), .sweeps = closed_form ? 1 : newton_steps};
   const double inverse_h = 1 / task.h;
   put<P>(pack, moved, either(hard, idle), slots, [&](int a) {
     return PositionRow{c.x[a], c.v[a], inverse_h, c.magic[a]};
@@ -181,8 +184,8 @@ MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, co
 }
 
 /// The constant inverse, twice: what the first time leaves is known from scalar products.
-template <int P> void project_pack(const MoleculePack& pack, const MoleculeColumns& c) {
-  const RigidTriangle t = *pack.triangle;
+template <int P> MoleculeReport project_pack(const MoleculePack& pack, const MoleculeColumns& c) {
+  const RigidTriangles& t = *pack.triangles;
   double* const slots = pack.scratch;
   const double* const velocities[3] = {c.v[0], c.v[1], c.v[2]};
   Vectors<P> r1, r2, v1, v2;
@@ -202,7 +205,12 @@ template <int P> void project_pack(const MoleculePack& pack, const MoleculeColum
   l = {l.a + more.a, l.b + more.b, l.c + more.c};
   Atoms<P> moved;
   push<P>(t, r1, r2, l, moved);
-  put<P>(pack, moved, idle_lanes<P>(pack), slots, [&](int a) { return VelocityRow{c.v[a]}; });
+  // Velocities that are no numbers are left to those who name them.
+  const Flags<P> idle = idle_lanes<P>(pack);
+  const Pack<P> all = absolute(l.a) + (absolute(l.b) + absolute(l.c));
+  const Flags<P> lost = but_not(exceeds(all, same<P>(std::numeric_limits<double>::max())), idle);
+  put<P>(pack, moved, either(lost, idle), slots, [&](int a) { return VelocityRow{c.v[a]}; });
+  return {.open = bits_of(lost)};
 }
 
 template <bool closed_form>
@@ -210,8 +218,7 @@ MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& 
   return solve_pack<8, closed_form>(pack, columns, task);
 }
 MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask&) {
-  project_pack<8>(pack, columns);
-  return {};
+  return project_pack<8>(pack, columns);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "engine/outcome.hpp"
 
 #include <atomic>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <limits>
@@ -32,10 +33,20 @@ struct Encounter {
   double since = 0;                    ///< when an encounter was seen for the first time in the run
 };
 
+/// What solvers of constraints have done so far.
+struct ConstraintWork {
+  std::int64_t iterations = 0;  ///< or sweeps over all constraints
+  std::int64_t measured = 0;    ///< of these, in position stages of which the violation before and after is known
+  double log = 0;               ///< sum of ln(after / before) of these stages
+
+  /// What one of the measured iterations leaves of the violation; 0 where none is.
+  double contraction() const { return measured > 0 ? std::exp(log / static_cast<double>(measured)) : 0; }
+};
+
 /// Work done so far, counted where it is done.
 struct Evaluations {
   std::int64_t force = 0, kepler = 0, jacobian = 0;
-  std::int64_t constraint = 0;                       ///< iterations or sweeps over all constraints
+  ConstraintWork constraint = {};
   std::int64_t rejected = 0;                         ///< trial steps that an error controller threw away
   std::int64_t unsettled = 0;                        ///< steps that have errors above those that their method is for
   std::optional<NeighborStatistics> neighbors = {};  ///< of this process, where some force has a range

@@ -19,6 +19,16 @@ void check_schedule(const Schedule& schedule, const std::string& monitor) {
                     "of times",
                     monitor, given));
   }
+  if (schedule.after && (schedule.wall != 0 || !schedule.times.empty())) {
+    throw Error(
+        fmt::format("monitor '{}' looks by {}, so it cannot begin after a time; after is for steps or an "
+                    "interval of time",
+                    monitor, schedule.wall != 0 ? "wall time" : "a list of times"));
+  }
+  if (schedule.after && !std::isfinite(*schedule.after)) {
+    throw Error(
+        fmt::format("monitor '{}' cannot begin after time {}; a finite time is expected", monitor, *schedule.after));
+  }
   if (schedule.steps != 0) positive_cadence(schedule.steps);
   if (schedule.wall != 0) positive_cadence(schedule.wall);
 }
@@ -80,6 +90,19 @@ std::int64_t steps_to(double time, double start, double dt) {
                     start + std::ceil(exact) * dt, std::ceil(exact)));
   }
   return static_cast<std::int64_t>(std::abs(whole));
+}
+
+std::int64_t first_multiple(double after, double start, double dt, std::int64_t cadence) {
+  const double exact = (after - start) / dt;
+  if (!(exact > 0)) return 0;
+  constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+  if (!(exact <= 9e15)) return never;
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const double far = start == 0 ? 0 : 4 * epsilon * std::max(std::abs(after), std::abs(start)) / std::abs(dt);
+  const double rounding = 1e-9 + 16 * epsilon * exact + std::min(far, 0.01);
+  const auto step = static_cast<std::int64_t>(std::max(std::ceil(exact - rounding), 0.0));
+  const std::int64_t multiples = step / cadence + (step % cadence == 0 ? 0 : 1);
+  return multiples > never / cadence ? never : multiples * cadence;
 }
 
 double at_start_if_rounded(double time, double start) {
@@ -147,18 +170,19 @@ std::vector<std::int64_t> steps_at(const std::vector<double>& times, double star
 }
 
 std::string when_in_time(const Schedule& schedule) {
-  return schedule.times.empty() ? fmt::format("every {} of time", schedule.interval) : "at times of a list";
+  if (!schedule.times.empty()) return "at times of a list";
+  return schedule.interval == 0 ? "from a time on" : fmt::format("every {} of time", schedule.interval);
 }
 
 bool Looks::is_listed(std::int64_t step) const {
-  const auto after = std::upper_bound(at_steps.begin(), at_steps.end(), step);
-  return after != at_steps.begin() && step - *std::prev(after) < in_a_row;
+  const auto later = std::upper_bound(at_steps.begin(), at_steps.end(), step);
+  return later != at_steps.begin() && step - *std::prev(later) < in_a_row;
 }
 
 std::int64_t Looks::next_listed(std::int64_t step) const {
   if (in_a_row > 1 && is_listed(step) && is_listed(step + 1)) return step + 1;
-  const auto after = std::upper_bound(at_steps.begin(), at_steps.end(), step);
-  return after == at_steps.end() ? std::numeric_limits<std::int64_t>::max() : *after;
+  const auto later = std::upper_bound(at_steps.begin(), at_steps.end(), step);
+  return later == at_steps.end() ? std::numeric_limits<std::int64_t>::max() : *later;
 }
 
 }  // namespace noether::detail

@@ -2,17 +2,20 @@
 /// When a monitor looks.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace noether {
 
-/// At step 0 and every multiple of one of the first three, or at the times of a list; the others are 0 or empty.
+/// At step 0 and every multiple of one of the first three, or at the times of a list; the others are 0 or empty. Looks
+/// by steps or by an interval may begin later.
 struct Schedule {
   std::int64_t steps = 0;
-  double interval = 0;             ///< of time, below 0 where time falls [time]
-  double wall = 0;                 ///< of wall time, at whole steps [s]; bits of the trajectory do not depend on it
-  std::vector<double> times = {};  ///< by the clock of the run, in the order in which it comes to them [time]
+  double interval = 0;               ///< of time, below 0 where time falls [time]
+  double wall = 0;                   ///< of wall time, at whole steps [s]; bits of the trajectory do not depend on it
+  std::vector<double> times = {};    ///< by the clock of the run, in the order in which it comes to them [time]
+  std::optional<double> after = {};  ///< by the clock of the run: looks before are left out, the others stay [time]
 };
 
 namespace detail {
@@ -50,6 +53,8 @@ void check_equal_intervals(const std::vector<double>& times, const std::string& 
 /// step
 std::vector<std::int64_t> steps_at(const std::vector<double>& times, double start, double dt,
                                    const std::string& monitor);
+/// The first multiple of a cadence of steps at or after the time `after` [time]; both may be rounded.
+std::int64_t first_multiple(double after, double start, double dt, std::int64_t cadence);
 /// When a monitor by time looks, in words.
 std::string when_in_time(const Schedule& schedule);
 
@@ -63,18 +68,20 @@ inline std::int64_t next_multiple(std::int64_t step, std::int64_t cadence) {
 struct Looks : Schedule {
   std::int64_t in_a_row = 1;                ///< steps to look at, from each multiple or listed one on
   std::vector<std::int64_t> at_steps = {};  ///< those of `times`, where the clock is fixed; they rise
+  std::int64_t first = 0;                   ///< the multiple from which on to look, where the clock is fixed
 
   /// Whether steps tell when to look.
   bool by_steps() const { return steps > 0 || !at_steps.empty(); }
   /// Whether times tell: a fixed clock has turned them into steps.
   bool by_time() const { return (interval != 0 || !times.empty()) && !by_steps(); }
   bool due(std::int64_t step) const {
-    if (steps > 0) return steps == 1 || step % steps < in_a_row;
+    if (steps > 0) return step >= first && (steps == 1 || step % steps < in_a_row);
     return !at_steps.empty() && is_listed(step);
   }
   /// The step after `step` that is looked at; none: the largest number there is.
   std::int64_t next(std::int64_t step) const {
     if (steps == 0) return next_listed(step);
+    if (step < first) return first;
     return in_a_row > 1 && step % steps + 1 < in_a_row ? step + 1 : next_multiple(step, steps);
   }
 

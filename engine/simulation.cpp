@@ -105,6 +105,10 @@ template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
     added.name = fmt::format("{}_{}", base, k);
   }
   if (added.schedule.steps == 0 && added.schedule.wall == 0) schedule_by_time(added);
+  if (added.schedule.after && raw_.clock().mode() == ClockMode::fixed) {  // steps tell from here on
+    added.schedule.first = detail::first_multiple(*std::exchange(added.schedule.after, {}), raw_.clock().start(),
+                                                  raw_.clock().dt(), added.schedule.steps);
+  }
   check_wanted(added);
 }
 
@@ -131,9 +135,10 @@ template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) 
   }
   if (raw_.clock().mode() == ClockMode::free) {
     // One that comes late has nothing to say of times that have passed.
-    const double passed = std::floor((time() - raw_.clock().start()) / interval);
+    const double from = has_begun(added, time()) ? time() : *added.schedule.after;
+    const double passed = std::floor((from - raw_.clock().start()) / interval);
     if (passed > 0 && passed < 9e15) added.observed = static_cast<std::int64_t>(passed);
-    while (raw_.clock().is_later(time(), next_look(added))) ++added.observed;
+    while (raw_.clock().is_later(from, next_look(added))) ++added.observed;
     return;
   }
   const std::int64_t steps = steps_in(interval);
@@ -196,7 +201,7 @@ template <class Real> void Simulation<Real>::turn_back(double until) {
   const IntegratorClaims claims = integrator_.claims();
   if (!claims.backward) refuse(fmt::format("method '{}' cannot go back in time", claims.method));
   for (const auto& scheduled : monitors_) {
-    if (!scheduled.schedule.by_time()) continue;
+    if (!scheduled.schedule.by_time() && !scheduled.schedule.after) continue;
     refuse(fmt::format("monitor '{}' samples {}, so the run cannot turn back; attach it by steps", scheduled.name,
                        detail::when_in_time(scheduled.schedule)));
   }
@@ -341,6 +346,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end()
   }
   for (Scheduled& scheduled : monitors_) {
     if (!scheduled.monitor.looks_at_the_end()) continue;
+    if (step() < scheduled.schedule.first || !has_begun(scheduled, moment.time())) continue;
     if (!has_looked(scheduled, moment.time(), between_steps)) scheduled.monitor.at_end(moment);
   }
   return {};
@@ -361,8 +367,8 @@ template <class Real> void Simulation<Real>::show_to_writers(const Outcome& ende
 /// Whether a monitor has seen the end of the run already. Looks within a step that then fails are of later times.
 template <class Real>
 bool Simulation<Real>::has_looked(const Scheduled& scheduled, double end, bool between_steps) const {
-  if (scheduled.schedule.by_steps()) return !between_steps && scheduled.schedule.due(step());
-  if (!scheduled.schedule.by_time() || scheduled.observed == 0) return false;
+  if (scheduled.schedule.by_steps()) return !between_steps && due(scheduled);
+  if (!scheduled.schedule.by_time() || scheduled.observed == 0 || !has_begun(scheduled, end)) return false;
   const double start = raw_.clock().start();
   return std::abs(look_of(scheduled, scheduled.observed - 1) - end) <= detail::rounding_of(end, start);
 }
@@ -374,14 +380,16 @@ template <class Real> std::int64_t Simulation<Real>::unresolved() const {
 }
 
 template <class Real> bool Simulation<Real>::due(const Scheduled& scheduled) const {
-  if (scheduled.schedule.by_steps()) return scheduled.schedule.due(step());
+  if (scheduled.schedule.by_steps()) return scheduled.schedule.due(step()) && has_begun(scheduled, raw_.clock().high());
   if (scheduled.schedule.wall <= 0) return false;
   return std::chrono::duration<double>(looked_at_clock_ - scheduled.last_wall).count() >= scheduled.schedule.wall;
 }
 
 template <class Real> void Simulation<Real>::show_start() {
   for (auto& scheduled : monitors_) {
-    if (std::exchange(scheduled.begun, true) || scheduled.schedule.times.empty()) continue;
+    const bool later = scheduled.schedule.first > 0 || scheduled.schedule.after;
+    const bool waits = !scheduled.schedule.times.empty() || (later && scheduled.records);
+    if (std::exchange(scheduled.begun, true) || !waits) continue;
     scheduled.monitor.at_start(snapshot({.energy = scheduled.wanted.energy}));
   }
 }
@@ -574,7 +582,8 @@ template <class Real> void Simulation<Real>::change_step(double dt) {
     throw Error(fmt::format("method '{}' chooses its steps itself; they cannot be set", integrator_.claims().method));
   }
   for (const auto& scheduled : monitors_) {
-    if (scheduled.schedule.interval == 0 && scheduled.schedule.times.empty()) continue;
+    const detail::Looks& looks = scheduled.schedule;
+    if (looks.interval == 0 && looks.times.empty() && looks.first == 0) continue;
     throw Error(fmt::format("monitor '{}' samples {}, which a new step would shift; attach it by steps", scheduled.name,
                             detail::when_in_time(scheduled.schedule)));
   }

@@ -65,6 +65,12 @@ template <class Real = double> class Simulation {
   template <class M> M& every_wall(double seconds, M monitor) {
     return *add(AnyMonitor<Real>(std::move(monitor)), {.wall = detail::positive_cadence(seconds)}).template get<M>();
   }
+  /// The same by a schedule, which may begin later: `sim.every({.steps = 10, .after = 100}, RadialDistribution())`
+  /// leaves out what is before time 100. Errors that are relative to a start are then to the first look.
+  /// @throws Error  unless exactly one cadence is given
+  template <class M> M& every(const Schedule& schedule, M monitor) {
+    return *attach(AnyMonitor<Real>(std::move(monitor)), schedule).template get<M>();
+  }
   /// Attaches a monitor whose type is known only at run time: what a scene or another language asked for.
   /// @return the monitor, which stays where it is as long as the simulation lives
   /// @throws Error  unless exactly one cadence is given, and the run can serve the monitor
@@ -168,6 +174,10 @@ template <class Real = double> class Simulation {
   void observe_rounded(double limit);
   Outcome fail_before(double unreached);
   bool due(const Scheduled& scheduled) const;
+  /// Whether a time is one at which a monitor that begins later looks.
+  bool has_begun(const Scheduled& scheduled, double time) const {
+    return !scheduled.schedule.after || !raw_.clock().is_later(*scheduled.schedule.after, time);
+  }
   void show(const Snapshot<Real>& moment);
   std::int64_t next_cut(std::int64_t end) const;
   /// Whether a monitor looks here and at the next step, and wants to know the action between.

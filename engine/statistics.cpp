@@ -80,11 +80,23 @@ double SeriesStatistics::mean() const {
 
 std::optional<double> SeriesStatistics::mean_error() const {
   if (means_.size() < fewest_for_error) return {};
-  const double n = static_cast<double>(means_.size());
-  double mean = 0, squares = 0;
+  const std::size_t blocks = means_.size();
+  const double n = static_cast<double>(blocks);
+  double mean = 0;
   for (const double one : means_) mean += one / n;
-  for (const double one : means_) squares += (one - mean) * (one - mean);
-  return std::sqrt(squares / (n - 1) / n);
+  const auto products = [&](std::size_t lag) {
+    double sum = 0;
+    for (std::size_t k = lag; k < blocks; ++k) sum += (means_[k] - mean) * (means_[k - lag] - mean);
+    return sum;
+  };
+  const double squares = products(0);
+  double all = squares;
+  for (std::size_t lag = 1; lag < blocks / 2; ++lag) {
+    const double more = products(lag);
+    if (!(more > 0)) break;
+    all += 2 * more;
+  }
+  return std::sqrt(all / (n - 1) / n);
 }
 
 void SeriesStatistics::save(SavedState& saved, const std::string& prefix) const { save_part(saved, prefix, *this); }

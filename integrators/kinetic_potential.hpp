@@ -81,7 +81,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     if constexpr (constrained) {
       claims.inexact = "A";
       claims.constraints = constraints_.set().equations();
-      claims.constraint_tolerance = constraints_.set().tolerance();
+      claims.constraint_tolerance = constraints_.tolerance();
       claims.keeps_momentum = claims.keeps_momentum && constraints_.set().keeps_momentum();
       claims.keeps_angular_momentum = claims.keeps_angular_momentum && constraints_.set().keeps_angular_momentum();
     }
@@ -213,10 +213,10 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     observing_ = wanted;
     if constexpr (constrained) {
       if (wanted) {
-        evaluations_.constraint = constraints_.iterations();
+        evaluations_.constraint = constraints_.work();
       } else {
         constraints_.forget_failure();
-        constraints_.restore_iterations(evaluations_.constraint);
+        constraints_.restore(evaluations_.constraint);
       }
     }
   }
@@ -228,7 +228,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   }
   Evaluations evaluations() const {
     Evaluations evaluations = evaluations_;
-    if constexpr (constrained) evaluations.constraint = constraints_.iterations();
+    if constexpr (constrained) evaluations.constraint = constraints_.work();
     const auto* list = workspace_.find<NeighborList>();
     if (list != nullptr && list->statistics().searches > 0) evaluations.neighbors = list->statistics();
     return evaluations;
@@ -239,7 +239,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     for (const Kick& kick : kicks_) save_value(saved, moved_key(prefix, kick), kick.moved);
     if constexpr (constrained) {
       detail::save_signature(saved, prefix + "constraints/", constraints_.set());
-      save_value(saved, prefix + "constraints/iterations", constraints_.iterations());
+      constraints_.save_work(saved, prefix + "constraints/");
     }
   }
   void load(const SavedState& saved, const std::string& prefix) {
@@ -253,8 +253,8 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     failure_.reset();
     if constexpr (constrained) {
       detail::check_signature(saved, prefix + "constraints/", constraints_.set());
-      load_value(saved, prefix + "constraints/iterations", evaluations_.constraint);
-      constraints_.restore_iterations(evaluations_.constraint);
+      constraints_.load_work(saved, prefix + "constraints/");
+      evaluations_.constraint = constraints_.work();
       constraints_.forget_failure();
     }
   }

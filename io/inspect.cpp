@@ -341,7 +341,8 @@ std::optional<MonitorSeries> untried_monitor(const Hdf5File& file, const std::st
     stride = std::max(stride, (count + choice.most_numbers - 1) / choice.most_numbers);
   }
   stride = std::clamp<std::size_t>(stride, 1, std::max<std::size_t>(samples, 1));
-  const std::vector<std::size_t> numbers = kept_numbers(samples, stride);
+  std::vector<std::size_t> numbers = kept_numbers(samples, stride);
+  if (choice.last_alone && choice.last_alone(name) && samples > 0) numbers = {samples - 1};
   for (auto& [quantity, content] : series.quantities) {
     content.second = kept_rows(datasets.at(quantity), numbers, static_cast<std::size_t>(numbers_in(content.first)));
   }

@@ -87,6 +87,8 @@ struct MonitorChoice {
   /// Where a quantity of several numbers has more than these in all, samples at equal distances are kept, back
   /// from the last, and the first; 0: all are.
   std::size_t most_numbers = 0;
+  /// Whether the last sample of a monitor alone is read, as of a mean over the run; nothing: of none.
+  std::function<bool(const std::string& monitor)> last_alone = {};
 };
 
 /// The samples of monitors, in the order of their names.

@@ -97,6 +97,7 @@ class PathCollector {
     if (key == "system") add_fields(keys, parts_.systems(), type);
     if (key == "decorator") add_fields(keys, parts_.decorators(), type);
     if (key == "stop") add_fields(keys, parts_.stops(), type);
+    if (key == "every") keys.emplace_back("after");
     if (key == "every") add_fields(keys, parts_.monitors(), type);
     return keys;
   }

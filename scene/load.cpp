@@ -322,7 +322,7 @@ class SceneReader {
       SceneWatch watch;
       if (type == "trajectory") watch.kind = SceneWatch::Kind::trajectory;
       if (type == "checkpoint") watch.kind = SceneWatch::Kind::checkpoint;
-      for (const char* key : {"every", "steps", "times"}) reader.find(key);
+      for (const char* key : {"every", "steps", "times", "after"}) reader.find(key);
       if (kind != nullptr) watch.monitor = kind->read(reader);
       if (kind == nullptr && type == "checkpoint") reader.find("wall");
       reader.finish();
@@ -332,6 +332,7 @@ class SceneReader {
         }
       }
       watch.cadence = read_cadence(reader, type == "checkpoint", scene_.integrator, effective);
+      read_after(reader, scene_.integrator, watch.cadence, effective);
       if (kind != nullptr) {
         for (auto& [key, value] : *watch.monitor.effective.get<SceneValue::Table>()) effective.put(key, value);
       }

@@ -46,4 +46,13 @@ Minimized minimize_start(Scene& scene) {
   return minimize(scene.particles, forces, constraints_of(scene), *scene.minimize);
 }
 
+void begin_at_minimum(Scene& scene) {
+  if (!scene.minimize) return;
+  const Minimized found = minimize_start(scene);
+  if (found.converged()) return;
+  throw SceneError(
+      fmt::format("[minimize] has no minimum for the run to begin at: none is found: {}", found.failure->message),
+      {.file = scene.source.file, .key = "minimize"});
+}
+
 }  // namespace noether

@@ -13,4 +13,7 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
 /// Brings the particles of a scene with a table [minimize] to a minimum; they are what the run begins with.
 Minimized minimize_start(Scene& scene);
 
+/// The same for studies; nothing where the scene has no such table. @throws SceneError  where no minimum is found
+void begin_at_minimum(Scene& scene);
+
 }  // namespace noether

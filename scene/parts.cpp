@@ -252,8 +252,11 @@ void find_held(SceneConstraint& constraint, const std::vector<HeldDistance>& dis
 }
 
 void attach(Simulation<double>& sim, const Cadence& cadence, AnyMonitor<double> monitor) {
-  sim.attach(std::move(monitor),
-             {.steps = cadence.steps, .interval = cadence.interval, .wall = cadence.wall, .times = cadence.times});
+  sim.attach(std::move(monitor), {.steps = cadence.steps,
+                                  .interval = cadence.interval,
+                                  .wall = cadence.wall,
+                                  .times = cadence.times,
+                                  .after = cadence.after});
 }
 
 std::vector<double> read_start(const TableReader& reader, const SceneValue& list, Index size,

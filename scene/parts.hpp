@@ -29,9 +29,10 @@ namespace noether {
 /// of a list.
 struct Cadence {
   std::int64_t steps = 0;
-  double wall = 0;                 ///< [s]; 0: not by wall time
-  double interval = 0;             ///< [time], where the method chooses the steps; 0: by steps
-  std::vector<double> times = {};  ///< by the clock of the run, as it comes to them [time]; empty: not by a list
+  double wall = 0;                   ///< [s]; 0: not by wall time
+  double interval = 0;               ///< [time], where the method chooses the steps; 0: by steps
+  std::vector<double> times = {};    ///< by the clock of the run, as it comes to them [time]; empty: not by a list
+  std::optional<double> after = {};  ///< by the clock of the run, for steps and intervals: not before [time]
 };
 
 /// What a part adds to a splitting as a letter of its own.

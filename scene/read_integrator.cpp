@@ -540,4 +540,39 @@ Cadence read_cadence(TableReader& reader, bool may_be_wall, const SceneIntegrato
   return cadence;
 }
 
+void read_after(TableReader& reader, const SceneIntegrator& integrator, Cadence& cadence, SceneValue& effective) {
+  const SceneValue* after = reader.find("after");
+  if (after == nullptr) return;
+  const UnitSystem& units = *reader.context().units;
+  const double time = reader.number(*after, "after", "time"), start = integrator.start;
+  const auto fail = [&](const std::string& message) {
+    reader.fail(after, "after", fmt::format("after = {} {}", to_text(*after), message));
+  };
+  if (!cadence.times.empty()) fail("is for every and steps; take times before it out of the list instead");
+  if (cadence.wall > 0) fail("is for every and steps; wall time has nothing to do with it");
+  if (!std::isfinite(time)) fail("is not a valid time; a finite one is expected");
+  const double sign = integrator.direction() == Direction::forward ? 1 : -1;
+  if (sign * (time - start) < 0)
+    fail(fmt::format("lies before the start at {}; give a later time", time_text(start, units)));
+  // The first look of the cadence, as the run will take it.
+  double first = time;
+  if (integrator.step != 0 && !integrator.adaptive()) {
+    first = start +
+            integrator.step * static_cast<double>(detail::first_multiple(time, start, integrator.step, cadence.steps));
+  } else if (cadence.interval != 0) {
+    first = start + cadence.interval * std::ceil((time - start) / cadence.interval * (1 - 1e-12));
+  }
+  const auto length = integrator.length();
+  const double grace = integrator.adaptive() ? 0 : std::abs(integrator.step) / 2;
+  if (length && std::abs(first - start) > std::abs(*length) + grace) {
+    const std::string end = time_text(start + *length, units);
+    fail(sign * (time - start - *length) > grace
+             ? fmt::format("is beyond the end of the run at {}, so there would be no sample; give an earlier time", end)
+             : fmt::format("leaves no sample: the next one would be at {}, beyond the end of the run at {}",
+                           time_text(first, units), end));
+  }
+  cadence.after = time;
+  effective.put("after", *after);
+}
+
 }  // namespace noether

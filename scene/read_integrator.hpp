@@ -22,4 +22,9 @@ SceneIntegrator read_method_alone(const SceneContext& context, const SceneValue&
 /// @throws SceneError
 Cadence read_cadence(TableReader& reader, bool may_be_wall, const SceneIntegrator& integrator, SceneValue& effective);
 
+/// Reads `after`, the time before which a cadence of steps or time has no looks.
+/// @param effective  receives what the scene wrote
+/// @throws SceneError  for one before the start, or so late that the run ends before a look
+void read_after(TableReader& reader, const SceneIntegrator& integrator, Cadence& cadence, SceneValue& effective);
+
 }  // namespace noether

@@ -105,7 +105,7 @@ std::string to_json(const RunReport& r) {
       {"evaluations", Json::object({{"force", r.evaluations.force},
                                     {"kepler", r.evaluations.kepler},
                                     {"jacobian", r.evaluations.jacobian},
-                                    {"constraint", r.evaluations.constraint},
+                                    {"constraint", r.evaluations.constraint.iterations},
                                     {"rejected", r.evaluations.rejected},
                                     {"unsettled", r.evaluations.unsettled}})},
       {"wall_s", r.wall_s},
@@ -122,6 +122,10 @@ std::string to_json(const RunReport& r) {
                                                     {"sort_seconds", list->sort_seconds},
                                                     {"pairs_per_particle", list->pairs},
                                                     {"skin", list->skin}}));
+  }
+  if (const ConstraintWork& work = r.evaluations.constraint; work.iterations > 0) {
+    const Json contraction = work.measured > 0 ? Json(work.contraction()) : Json();
+    members.emplace_back("constraints", Json::object({{"iterations", work.iterations}, {"contraction", contraction}}));
   }
   if (!r.cost.empty()) members.emplace_back("cost", json_of(r.cost));
   if (r.minimized) {
@@ -219,11 +223,11 @@ std::string details_of(const RunReport& r) {
     text += "\n";
   }
   text += cost_in_words(r.cost);
-  if (r.evaluations.constraint > 0) {
-    text += fmt::format("constraints: {} in all, {:.3g} for each force evaluation\n",
-                        counted(r.evaluations.constraint, "iteration"),
-                        static_cast<double>(r.evaluations.constraint) /
-                            static_cast<double>(std::max<std::int64_t>(r.evaluations.force, 1)));
+  if (const ConstraintWork& work = r.evaluations.constraint; work.iterations > 0) {
+    text += fmt::format(
+        "constraints: {} in all, {:.3g} for each force evaluation{}\n", counted(work.iterations, "iteration"),
+        static_cast<double>(work.iterations) / static_cast<double>(std::max<std::int64_t>(r.evaluations.force, 1)),
+        work.measured > 0 ? fmt::format("; one leaves {:.2g} of the violation", work.contraction()) : "");
   }
   if (const auto& list = r.evaluations.neighbors) {
     text +=

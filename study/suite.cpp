@@ -5,6 +5,7 @@
 #include "integrators/all_schemes.hpp"
 #include "monitors/monitors.hpp"
 #include "numbers/error.hpp"
+#include "scene/minimize.hpp"
 #include "study/multistep_roots.hpp"
 
 #include <fmt/format.h>
@@ -265,7 +266,8 @@ Suite run_suite(const std::vector<std::filesystem::path>& scenes, const SuiteOpt
     }
     for (const SceneVerdict& verdict : scene.verdicts) {
       if (verdict.nightly && !options.nightly) continue;
-      const Scene changed = verdict.sets.empty() ? scene : load_scene(file, *scene.parts, verdict.sets);
+      Scene changed = verdict.sets.empty() ? scene : load_scene(file, *scene.parts, verdict.sets);
+      begin_at_minimum(changed);
       Judge(changed, verdict, options, place).run(suite.rows);
     }
   }

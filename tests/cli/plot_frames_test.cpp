@@ -136,6 +136,28 @@ TEST_CASE("of monitors the samples that are wanted are read, and of too many som
   }
 }
 
+TEST_CASE("of a monitor whose last sample alone is drawn no other is read", "[cli][plot]") {
+  const SceneFolder folder(two_bodies + "[[every]]\ntype = \"elements\"\nsteps = 1\n");
+  output(folder, "run scene.toml --quiet");
+  const auto file = folder / "scene.out/run.h5";
+  const auto all = io::read_monitors(file);
+  const auto last = io::read_monitors(file, {.last_alone = [](const std::string& name) { return name == "elements"; }});
+  REQUIRE(all.size() == last.size());
+  for (std::size_t m = 0; m < all.size(); ++m) {
+    const bool alone = all[m].name == "elements";
+    CHECK(last[m].step.size() == (alone ? 1 : all[m].step.size()));
+    CHECK(last[m].step.back() == all[m].step.back());
+    CHECK(last[m].time.back() == all[m].time.back());
+    for (const auto& [quantity, content] : all[m].quantities) {
+      const std::vector<double>& values = last[m].quantities.at(quantity).second;
+      REQUIRE(content.second.size() == values.size() * (alone ? all[m].step.size() : 1));
+      const auto from = content.second.end() - static_cast<std::ptrdiff_t>(values.size());
+      for (std::size_t k = 0; k < values.size(); ++k)
+        CHECK((values[k] == from[static_cast<std::ptrdiff_t>(k)] || std::isnan(values[k])));
+    }
+  }
+}
+
 TEST_CASE("of samples at equal distances the first is kept too: changes are counted from it", "[cli][plot]") {
   std::string scene = two_bodies + "[[every]]\ntype = \"elements\"\nsteps = 1\n";
   scene.replace(scene.find("steps = 100"), 11, "steps = 30000");  // more numbers than one block of rows has

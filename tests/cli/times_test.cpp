@@ -60,6 +60,43 @@ TEST_CASE("a run is resumed in the middle of its lists", "[cli][times][resume]")
   CHECK(other.err.starts_with("--set every.trajectory.times=[0.9]: every.2.times = [0.9] was [0.9, 0.95]; "));
 }
 
+TEST_CASE("a monitor that begins later has the samples of one that does not, from then on", "[cli][times]") {
+  const SceneFolder late, whole, cut;
+  const std::string after = "run scene.toml --quiet --set every.energy.after=0.55 --set every.trajectory.after=0.3 ";
+  CHECK(noether(late, after).exit_code == 0);
+  CHECK(noether(whole, "run scene.toml --quiet").exit_code == 0);
+  const auto samples = [](const fs::path& file, std::size_t monitor) { return io::read_monitors(file)[monitor]; };
+  const io::MonitorSeries one = samples(late / "scene.out/run.h5", 1), all = samples(whole / "scene.out/run.h5", 1);
+  REQUIRE(one.name == "energy");
+  CHECK(one.step == std::vector<std::int64_t>{60, 70, 80, 90, 100});
+  const std::vector<double>&some = one.quantities.at("value").second, &every = all.quantities.at("value").second;
+  const std::size_t numbers = some.size() / 5;
+  REQUIRE(every.size() == 11 * numbers);
+  for (std::size_t k = 0; k < some.size(); ++k) CHECK(some[k] == every[6 * numbers + k]);
+  CHECK(times_of(late / "scene.out/run.h5") == std::vector<double>{0.4, 0.6, 0.8, 1});
+  CHECK(output(late, "verify scene.out/run.h5") == "scene.out/run.h5: sound and complete, last step 100\n");
+  CHECK(output(late, "verify scene.out/run.h5 --against " + (whole / "scene.out/run.h5").string())
+            .find("identical bit for bit") != std::string::npos);
+  for (const std::string until : {"0.2", "0.7"}) {
+    fs::remove_all(cut / "scene.out");
+    CHECK(noether(cut, after + "--until " + until).exit_code == (until == "0.2" ? 2 : 0));
+    if (until == "0.2") continue;
+    CHECK(noether(cut, after + "--resume").exit_code == 0);
+    check_same_content(cut / "scene.out/run.h5", late / "scene.out/run.h5");
+  }
+  make_unfinished(late / "scene.out");
+  CHECK(noether(late, after + "--resume").exit_code == 0);
+  check_same_content(cut / "scene.out/run.h5", late / "scene.out/run.h5");
+  CHECK(output(late, "explain scene.toml --set every.energy.after=0.55")
+            .find("monitor energy, every 10 steps, not before 0.55\n") != std::string::npos);
+  const ProcessResult beyond = noether(late, "run scene.toml --set every.energy.after=0.95");
+  CHECK(beyond.exit_code == 0);  // the end is a sample
+  const ProcessResult never = noether(late, "run scene.toml --set every.energy.after=2");
+  CHECK(never.exit_code == 2);
+  CHECK(never.err.find("after = 2 is beyond the end of the run at 1, so there would be no sample; give an earlier "
+                       "time") != std::string::npos);
+}
+
 TEST_CASE("a list whose times all come later leaves a whole file from the first step on", "[cli][times]") {
   const SceneFolder folder;
   const std::string never = "run scene.toml --set 'every.trajectory.times=[7]' --json";

@@ -6,6 +6,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/settings.hpp"
 
+#include <cmath>
 #include <set>
 
 namespace noether {
@@ -230,6 +231,102 @@ TEST_CASE("an atom that is nowhere is named, and not lost among those beside it"
       CAPTURE(molecule.name, a);
       REQUIRE(failure);
       CHECK(failure->particle / atoms == 5);
+    }
+  }
+}
+
+TEST_CASE("a velocity that is no number is named at once, by every solver", "[lanes]") {
+  for (const ConstraintMethodInfo& info : constraint_methods) {
+    for (const double lost : {std::nan(""), HUGE_VAL}) {
+      for (const Molecule& molecule : {water(), path(9, 3), branched(14, 1), star(5), ring(6), long_chain(260, true)}) {
+        const auto atoms = static_cast<Index>(molecule.atoms.size());
+        if (atoms > 100 && info.method != ConstraintMethod::newton) continue;
+        if (info.method == ConstraintMethod::settle && molecule.name != "water") continue;
+        for (Index a = 0; a<atoms; a += atoms> 100 ? 37 : 1) {
+          Crowd crowd({.solver = info.method});
+          for (int k = 0; k < (atoms > 100 ? 6 : 21); ++k) crowd.add(molecule, k);
+          crowd.particles.velocities().set(5 * atoms + a, Vec3<double>(0, lost, 0));
+          crowd.particles.phase().opened = true;
+          ConstraintSolver<double> solver(crowd.constraints);
+          solver.bind(crowd.particles);
+          solver.project_velocities(crowd.particles, 0.002);
+          CAPTURE(info.name, molecule.name, a, lost);
+          REQUIRE(solver.failure());
+          CHECK(solver.failure()->particle / atoms == 5);
+          CHECK_THAT(solver.failure()->message, Catch::Contains("'" + molecule.name + "5_"));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("velocities of molecules with atoms of very different masses are those in 113 bits", "[lanes]") {
+  for (const double ratio : {1e4, 1e8, 1e10}) {
+    Molecule light_centers = full_tree();  // each between three heavy leaves and the heavy middle
+    light_centers.name = "light";
+    for (Molecule molecule : {light_centers, path(9, 3), branched(14, 1), full_tree(), star(4), ring(6)}) {
+      std::mt19937_64 random(3);
+      for (std::size_t a = 0; a < molecule.masses.size(); ++a) {
+        const bool light = molecule.name == "light" ? a >= 1 && a <= 4 : random() % 3 == 0;
+        molecule.masses[a] = light ? 12 / ratio : 12;
+      }
+      Crowd crowd;
+      for (int k = 0; k < 9; ++k) crowd.add(molecule, k, 0);
+      ParticleSystem<double>& s = crowd.particles;
+      std::normal_distribution<double> normal;
+      for (Index i = 0; i < s.size(); ++i) {
+        const double x = normal(random), y = normal(random), z = normal(random);
+        s.velocities().set(i, Vec3<double>(x, y, z));
+      }
+      s.phase().opened = true;
+      ParticleSystem<Quad> right = s.as<Quad>();
+      right.phase().opened = true;
+      ConstraintSolver<Quad> exact(crowd.constraints);
+      exact.bind(right);
+      exact.project_velocities(right, 0.002);
+      for (const SimdLevel level : all_levels()) {
+        const AtLevel at(level);
+        ParticleSystem<double> made = s;
+        ConstraintSolver<double> solver(crowd.constraints);
+        solver.bind(made);
+        solver.project_velocities(made, 0.002);
+        double across = 0;
+        for (Index e = 0; e < crowd.constraints.equations(); ++e) {
+          const ConstraintPlace place = crowd.constraints.place(e);
+          const Index i = place.group->particle(place.constraint, 0), j = place.group->particle(place.constraint, 1);
+          const auto& c = std::as_const(made);
+          const Vec3<double> r = c.positions()[i] - c.positions()[j], v = c.velocities()[i] - c.velocities()[j];
+          across = std::max(across, std::abs(dot(r, v)) / r.norm());
+        }
+        const double v = errors(made, right).second;
+        CAPTURE(ratio, molecule.name, v, across);
+        CHECK(!solver.failure());
+        CHECK(across < 1e-11);
+        CHECK(v < 1e-11);
+      }
+    }
+  }
+}
+
+TEST_CASE("a long chain in segments whose constraints have become dependent is named", "[lanes]") {
+  // An atom of almost no mass in a line with its neighbors: within a segment, at its ends, and in the last one.
+  const int bonds = 300, of_segment = bonds / 16 + 1;
+  for (const int at : {1, 7, of_segment - 1, of_segment, of_segment + 1, 5 * of_segment, bonds - 1}) {
+    Molecule chain = long_chain(bonds, true), singular = chain;
+    const auto middle = static_cast<std::size_t>(at);
+    singular.masses[middle] = 1e-16;
+    singular.atoms[middle] = 0.5 * (singular.atoms[middle - 1] + singular.atoms[middle + 1]);
+    chain.masses[middle] = 1e-16;
+    Crowd crowd;
+    for (int k = 0; k < 4; ++k) crowd.add(k == 2 ? singular : chain, k, 0);
+    for (const SimdLevel level : all_levels()) {
+      const AtLevel as(level);
+      std::optional<Failure> failure;
+      after_step<double>(crowd, 0.001, &failure);
+      CAPTURE(at);
+      REQUIRE(failure);
+      CHECK(failure->particle / (bonds + 1) == 2);
+      CHECK_THAT(failure->message, Catch::Contains("'chain2_") && Catch::Contains("dependent"));
     }
   }
 }

@@ -197,5 +197,77 @@ TEST_CASE("a molecule that LINCS cannot hold is named", "[solvers]") {
   }
 }
 
+TEST_CASE("a run tells what an iteration leaves of the violation", "[solvers]") {
+  for (const ConstraintMethod solver : {ConstraintMethod::rattle, ConstraintMethod::p_shake}) {
+    const auto work_of = [&](double tolerance) {
+      Crowd crowd({.solver = solver, .tolerance = tolerance});
+      for (int k = 0; k < 21; ++k) crowd.add(with_hydrogens(9), k);
+      ParticleSystem<double> s = crowd.particles;
+      ConstraintSolver<double> made(crowd.constraints);
+      made.bind(s);
+      for (int k = 0; k < 5; ++k) {
+        made.advance_positions(s, 0.002);
+        made.project_velocities(s, 0.002);
+      }
+      REQUIRE(!made.failure());
+      return made.work();
+    };
+    const ConstraintWork loose = work_of(1e-4), tight = work_of(1e-12);
+    // Both stages take about as many: eight orders of magnitude by so many more iterations.
+    const double more = static_cast<double>(tight.iterations - loose.iterations) / 10;
+    const double expected = std::pow(1e-8, 1 / more);
+    CAPTURE(expected, tight.contraction());
+    CHECK(tight.contraction() > 0.5 * expected);
+    CHECK(tight.contraction() < 1.5 * expected);
+    CHECK(tight.measured > 0);
+    CHECK(tight.measured < tight.iterations);
+  }
+  const auto work_of = [](const ConstraintOptions& options, int bonds) {
+    Crowd crowd(options);
+    crowd.add(path(bonds, 3), 0);
+    ParticleSystem<double> s = crowd.particles;
+    ConstraintSolver<double> made(crowd.constraints);
+    made.bind(s);
+    made.advance_positions(s, 0.0001);
+    REQUIRE(!made.failure());
+    return made.work();
+  };
+  CHECK(work_of({.solver = ConstraintMethod::lincs}, 9).measured == 0);
+  CHECK(work_of({.solver = ConstraintMethod::lincs}, 9).contraction() == 0);
+  for (const int bonds : {9, 300}) {  // in lanes, and by the solver of all cases
+    for (const ConstraintMethod solver : {ConstraintMethod::newton, ConstraintMethod::rattle}) {
+      const ConstraintWork work = work_of({.solver = solver, .tolerance = 1e-6}, bonds);
+      CAPTURE(bonds, work.contraction());
+      CHECK(work.measured > 0);
+      CHECK(work.contraction() > 0);
+      CHECK(work.contraction() < (solver == ConstraintMethod::newton ? 0.01 : 0.95));
+    }
+  }
+}
+
+TEST_CASE("in 113 bits a solver that is exact there leaves no violation on purpose", "[solvers][quad]") {
+  for (const ConstraintMethodInfo& info : constraint_methods) {
+    Crowd crowd({.solver = info.method});
+    crowd.add(info.method == ConstraintMethod::settle ? water() : path(3, 2), 0);
+    ParticleSystem<double> s = crowd.particles;
+    ParticleSystem<Quad> wide = s.as<Quad>();
+    ConstraintSolver<double> solver(crowd.constraints);
+    ConstraintSolver<Quad> exact(crowd.constraints);
+    solver.bind(s), exact.bind(wide);
+    CAPTURE(info.name);
+    CHECK(solver.tolerance() == crowd.constraints.tolerance());
+    CHECK(exact.tolerance() == (info.method == ConstraintMethod::rattle ? crowd.constraints.tolerance() : 0));
+    if (exact.tolerance() > 0) continue;
+    exact.advance_positions(wide, Quad(0.0001));
+    REQUIRE(!exact.failure());
+    for (Index e = 0; e < crowd.constraints.equations(); ++e) {
+      const ConstraintPlace place = crowd.constraints.place(e);
+      Quad value;
+      place.group->values(ConstraintPositions<Quad>(wide), place.constraint, place.constraint + 1, &value);
+      CHECK(std::abs(static_cast<double>(value)) < 1e-28);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace noether

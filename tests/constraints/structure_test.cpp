@@ -238,5 +238,30 @@ TEST_CASE("bonded terms within what is held go, and no others", "[constraints][s
   CHECK(left(hexane, bonds(hexane)) == std::array<std::size_t, 3>{0, 8 * 4, 8 * 3});
 }
 
+TEST_CASE("the peptide of the bench has every hydrogen on one atom, at lengths of chemistry", "[structure]") {
+  const UnitSystem units = unit_system("molecular");
+  const ParticleSystem<double> s = io::read_structure(NOETHER_SOURCE_DIR "/bench/structures/peptide.data",
+                                                      {.units = &units, .file_units = "real"});
+  const std::vector<HeldDistance> held = held_distances(s, RigidTerms::hydrogen_bonds, HeldLengths::start);
+  CHECK(s.size() == 239);
+  std::map<Index, int> hydrogens, of_center;
+  for (const HeldDistance& one : held) {
+    const auto [i, j] = one.particles;
+    const Index hydrogen = s.masses()[i] < 2 ? i : j;
+    ++hydrogens[hydrogen];
+    ++of_center[i + j - hydrogen];
+    const double length = (s.positions()[i] - s.positions()[j]).norm();
+    CHECK(length > 0.095);
+    CHECK(length < 0.11);
+  }
+  const auto& masses = s.masses();
+  CHECK(std::ssize(hydrogens) == std::count_if(masses.begin(), masses.end(), [](double m) { return m < 2; }));
+  std::array<int, 4> clusters{};  // by hydrogens on one atom
+  for (const auto& [atom, count] : of_center) ++clusters.at(static_cast<std::size_t>(count));
+  CHECK(clusters == std::array<int, 4>{0, 46, 20, 11});
+  const ConstraintSet set = hydrogen_bonds(s);
+  CHECK(set.equations() == 46 + 2 * 20 + 3 * 11);
+}
+
 }  // namespace
 }  // namespace noether::test

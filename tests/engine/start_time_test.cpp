@@ -366,4 +366,85 @@ TEST_CASE("a restored run that began at another time looks at the times of its l
   CHECK(test::same_bits(other_pages[0].second, pages[0].second));
 }
 
+TEST_CASE("a monitor that begins later looks when others do, and no bit depends on it", "[start time][after]") {
+  for (const std::string name : {"verlet", "dop853"}) {
+    for (const double start : {0.0, 1024.0}) {
+      CAPTURE(name, start);
+      Pages late, all, by_steps;
+      auto run = planets_from(start, name), other = planets_from(start, name);
+      run.every({.interval = 96, .after = start + 1000}, StateDiary{&late});
+      run.every({.steps = 3, .after = start + 1000}, StateDiary{&by_steps});
+      other.every_time(96, StateDiary{&all});
+      REQUIRE(run.run_until(start + 3200).ok());
+      REQUIRE(other.run_until(start + 3200).ok());
+      CHECK(test::same_bits(run.particles(), other.particles()));
+      REQUIRE(all.size() == 34);
+      REQUIRE(late.size() == 34 - 11);  // from 1056 on
+      for (std::size_t k = 0; k < late.size(); ++k) {
+        CHECK(late[k].first == all[k + 11].first);
+        CHECK(test::same_bits(late[k].second, all[k + 11].second));
+      }
+      REQUIRE(!by_steps.empty());
+      CHECK(by_steps[0].first >= start + 1000);
+      if (name == "verlet") CHECK(by_steps.size() == late.size());
+    }
+  }
+  Pages at, back;
+  auto run = planets_from(0, "verlet"), backward = planets_from(0, "verlet", -32);
+  run.every({.steps = 10, .after = 320}, StateDiary{&at});
+  backward.every({.interval = -64, .after = -100}, StateDiary{&back});
+  REQUIRE(run.run_until(640).ok());
+  REQUIRE(backward.run_until(-320).ok());
+  REQUIRE(at.size() == 2);
+  CHECK(at[0].first == 320);  // at that time itself
+  REQUIRE(back.size() == 4);
+  CHECK(back[0].first == -128);
+}
+
+TEST_CASE("errors of a monitor that begins later are relative to its first look", "[start time][after]") {
+  auto run = planets_from(0, "verlet");
+  const auto& late = run.every({.steps = 10, .after = 3000}, Energy());
+  const auto& whole = run.every(10, Energy());
+  REQUIRE(run.run_until(6400).ok());
+  CHECK(late.report().samples == 11);
+  CHECK(whole.report().samples == 21);
+  CHECK(late.report().first == 0);
+}
+
+TEST_CASE("a run goes on before and behind the time when a monitor begins", "[start time][after][restart]") {
+  for (const std::string name : {"verlet", "dop853"}) {
+    for (const double cut : {352.0, 1632.0}) {
+      CAPTURE(name, cut);
+      Pages whole, first, second;
+      const Schedule late{.interval = 160, .after = 1000};
+      auto run = planets_from(0, name), begun = planets_from(0, name), other = planets_from(0, name);
+      run.every(late, StateDiary{&whole});
+      begun.every(late, StateDiary{&first});
+      other.every(late, StateDiary{&second});
+      REQUIRE(run.run_until(3200).ok());
+      REQUIRE(begun.run_until(cut).ok());
+      other.restore(begun.save());
+      REQUIRE(other.run_until(3200).ok());
+      first.insert(first.end(), second.begin(), second.end());
+      REQUIRE(whole.size() == 14);
+      REQUIRE(first.size() == 14);
+      for (std::size_t k = 0; k < 14; ++k) {
+        CHECK(first[k].first == whole[k].first);
+        CHECK(test::same_bits(first[k].second, whole[k].second));
+      }
+    }
+  }
+}
+
+TEST_CASE("only looks by steps or an interval can begin later", "[start time][after]") {
+  auto run = planets_from(0, "verlet");
+  Pages pages;
+  CHECK_THROWS_WITH(run.every({.times = {64, 96}, .after = 70}, StateDiary{&pages}),
+                    Catch::Contains("cannot begin after a time"));
+  CHECK_THROWS_WITH(run.every({.wall = 1, .after = 70}, StateDiary{&pages}), Catch::Contains("wall time"));
+  CHECK_THROWS_WITH(run.every({.steps = 1, .after = NAN}, StateDiary{&pages}), Catch::Contains("finite"));
+  run.every({.steps = 2, .after = 70}, StateDiary{&pages});
+  CHECK_THROWS_WITH(run.change_step(16), Catch::Contains("from a time on"));
+}
+
 }  // namespace noether

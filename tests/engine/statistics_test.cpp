@@ -77,6 +77,30 @@ TEST_CASE("the error of the slope shrinks with the length of the run to the powe
   CHECK(std::abs(power - 1.5) < 0.2);
 }
 
+TEST_CASE("the error of a mean is that of many series, of values that stay alike for longer than a block too",
+          "[statistics]") {
+  Noise noise;
+  for (const double memory : {0.0, 5.0, 20.0, 40.0}) {  // samples
+    const double keep = memory > 0 ? std::exp(-1 / memory) : 0;
+    const int series = 200, samples = 2000;
+    double scatter = 0, told = 0;
+    for (int k = 0; k < series; ++k) {
+      SeriesStatistics one;
+      double y = 0;
+      for (int warm = 0; warm < 200; ++warm) y = keep * y + noise.next();
+      for (int n = 0; n < samples; ++n) {
+        y = keep * y + noise.next();
+        one.add(n, y);
+      }
+      scatter += one.mean() * one.mean() / series;
+      told += *one.mean_error() * *one.mean_error() / series;
+    }
+    CAPTURE(memory, std::sqrt(told / scatter));
+    CHECK(std::sqrt(told / scatter) > 0.85);
+    CHECK(std::sqrt(told / scatter) < 1.3);
+  }
+}
+
 TEST_CASE("statistics go on after a restart as if there had been none", "[statistics]") {
   SeriesStatistics whole, first;
   Noise noise;

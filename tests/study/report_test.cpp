@@ -153,6 +153,35 @@ energy_below = 1e-6
   CHECK_FALSE(suite.rows[3].accurate);
 }
 
+TEST_CASE("the suite begins at the minimum that a scene asks for", "[report]") {
+  const ScratchFolder folder;
+  const std::string scene = R"(units = "reduced"
+[particles]
+body = [{ name = "bob", mass = 1, x = [3, 0, 0], v = [0, 0, 0] }]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "harmonic_field"
+k = 1
+[[hamiltonian.force]]
+type = "uniform_field"
+acceleration = [1, 0, 0]
+)";
+  const std::string run = R"([integrator]
+method = "verlet"
+step = 0.2
+steps = 2000
+[[verdict]]
+energy_below = 1e-9
+)";
+  write_text(folder / "swings.toml", scene + run);
+  write_text(folder / "rests.toml", scene + "[minimize]\nmax_force = 1e-9\n" + run);
+  write_text(folder / "lost.toml", scene + "[minimize]\nmax_force = 1e-9\nsteps = 2\n" + run);
+  CHECK(run_suite({folder / "swings.toml"}).agreeing() == 0);
+  CHECK(run_suite({folder / "rests.toml"}).agreeing() == 1);
+  CHECK_THROWS_WITH(run_suite({folder / "lost.toml"}), Catch::Contains("none is found"));
+}
+
 TEST_CASE("the report of a search marks every limit, and those off theory in a way that shows", "[report]") {
   Stability search = search_of({limit("verlet", 2, 2), limit("near", 1.99, 2), limit("far", 1.9, 2),
                                 limit("<b>", 1.7, {}), limit("unlimited", {}, 2), limit("free", {}, {}),
