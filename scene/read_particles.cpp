@@ -106,10 +106,9 @@ ParticleSystem<double> from_frame(TableReader& reader, const std::filesystem::pa
   }
   for (const std::string& name : found.left_out) {
     if (name == BodyOrientation::name) {
-      reader.fail("bodies",
-                  fmt::format("{} has rigid bodies, and does not say what they are made of; continue the run "
-                              "by --resume, or start from its scene",
-                              reader.text("bodies")));
+      reader.fail("bodies", fmt::format("{} has rigid bodies, and does not say what they are made of; continue the run "
+                                        "by --resume, or start from its scene",
+                                        reader.text("bodies")));
     }
     warnings.push_back(
         fmt::format("no part of this scene uses the column '{}' of {}: it is left out", name, reader.text("bodies")));
@@ -206,6 +205,10 @@ void read_frame(TableReader& reader, ParticleSystem<double>& s, bool of_a_frame,
   const std::string frame = reader.text("frame", "as_given");
   if (frame != "as_given" && frame != "barycenter") {
     reader.fail("frame", no_such_frame(frame, of_a_frame || reader.has("structure")));
+  }
+  if (frame == "barycenter" && has_bodies(s) && s.bodies()->any_held()) {
+    reader.fail("frame",
+                "a fixed point holds one of the bodies and stays where it is; take frame = \"barycenter\" out");
   }
   if (frame == "barycenter" && s.box().is_periodic()) {
     reader.fail("frame", "a periodic box has no centre of mass; take frame = \"barycenter\" out");

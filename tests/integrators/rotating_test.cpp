@@ -129,6 +129,72 @@ TEST_CASE("the shadow of a top is flatter with every order, by both rotors", "[i
   check(Rotor::exact, {0.1, 3.87e-4, 9.03e-6, 1.52e-9, 1.48e-12});
 }
 
+namespace {
+
+/// The weight of a top as a force on the body itself, with some part of its torque.
+struct Weight {
+  double part = 1;
+  static ForceClaims claims() { return {.keeps_momentum = false, .keeps_angular_momentum = false, .on_bodies = true}; }
+  void add_to(ForceSink<double>& out, const ParticleSystem<double>& s) const {
+    for (Index i = 0; i < s.size(); ++i) {
+      const Vec3<double> arm = to_space<double>(test::matrix_of(s, i), Vec3<double>(0.2, 0.3, 0.5));
+      out.torque(i, part * cross<double>(arm, Vec3<double>(0, 0, -1)));
+      out.energy(arm[2]);
+    }
+  }
+};
+
+/// Turns about two axes alone, though the energy knows three.
+class WithoutThirdAxis : public Wrapped<AnyHamiltonian<double>> {
+ public:
+  using Wrapped::Wrapped;
+  HamiltonianClaims claims() const {
+    HamiltonianClaims claims = Wrapped::claims();
+    claims.columns = claims.turns = true;
+    return claims;
+  }
+  void flow(char letter, ParticleSystem<double>& s, const double& h) {
+    static_cast<void>(flow_with_action(letter, s, h));
+  }
+  double flow_with_action(char letter, ParticleSystem<double>& s, const double& h) {
+    double action = 0;
+    for (Index i = 0; letter == 'A' && i < s.size(); ++i) {
+      auto& orientation = s.column<BodyOrientation>();
+      const Turned<double> turned =
+          turn_by_axes<double>(std::as_const(orientation)[i], std::as_const(s).column<BodySpin>()[i],
+                               std::as_const(s).column<BodyInertia>()[i], h, {0, 1, 0});
+      orientation.set(i, turned.orientation);
+      action += turned.action;
+    }
+    return action + Wrapped::flow_with_action(letter, s, h);
+  }
+  EnergyTerms<double> energy(const ParticleSystem<double>& s) {
+    EnergyTerms<double> terms = Wrapped::energy(s);
+    terms.kinetic += turning_energy_of(s);
+    return terms;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the shadow finds a torque that is not the slope of its energy, and a rotor without an axis",
+          "[integrators][rotating]") {
+  const auto verdict = [](auto hamiltonian) {
+    Simulation sim(heavy_top(), compose(std::move(hamiltonian), schemes::verlet), 0.05);
+    auto& shadow = sim.every(1, ShadowHamiltonian<double>({4, 8, 12}));
+    REQUIRE(sim.run(400).ok());
+    return shadow.verdict();
+  };
+  const auto weighing = [](double part) {
+    ForceField<double> force;
+    force.add(Weight{part});
+    return force;
+  };
+  CHECK(verdict(turning(weighing(1))).starts_with("kept"));
+  CHECK_FALSE(verdict(turning(weighing(0.9))).starts_with("kept"));
+  CHECK_FALSE(verdict(WithoutThirdAxis(KineticPotential<ForceField<double>>(weighing(1)))).starts_with("kept"));
+}
+
 TEST_CASE("free bodies keep their angular momentum to the bit and their energy to rounding",
           "[integrators][rotating]") {
   for (const double h : {0.01, 0.1, 5.}) {
