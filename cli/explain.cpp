@@ -155,9 +155,11 @@ void sort_parts(const Scene& scene, Explanation& e) {
                              : watch.cadence.wall > 0      ? fmt::format("every {} s of wall time", watch.cadence.wall)
                              : watch.cadence.interval != 0 ? fmt::format("every {} of time", watch.cadence.interval)
                                                            : "every " + counted(watch.cadence.steps, "step");
-    const std::string later = watch.cadence.after ? fmt::format(", not before {:.12g}{}", *watch.cadence.after,
-                                                                scene.units->time == "1" ? "" : " " + scene.units->time)
-                                                  : "";
+    const std::string later =
+        watch.cadence.after
+            ? fmt::format(", not before {:.12g}{}", *watch.cadence.after,
+                          scene.units->time == "1" ? std::string() : " " + std::string(scene.units->time))
+            : "";
     const std::string cost =
         watch.monitor.cost && listed == 0 ? watch.monitor.cost(scene.particles.size(), watch.cadence.steps) : "";
     e.in.push_back(name + ", " + when + later + (scene.default_watches ? ", by default" : "") +

@@ -134,7 +134,7 @@ RigidBody ellipsoid(std::string name, double mass, const Vec3<double>& semi_axes
                          mass / 5 * Vec3<double>(square[1] + square[2], square[0] + square[2], square[0] + square[1]));
 }
 
-RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, bool linear) {
+RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, bool linear, double straight) {
   RigidBody body{.name = std::move(name)};
   if (sites.size() < 2) {
     throw Error(fmt::format("body '{}' has {} site{}; two or more are expected, or its moments of inertia", body.name,
@@ -156,7 +156,7 @@ RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, bool line
   auto [moments, axes] = principal_axes(tensor);
   const double largest = moments.maxCoeff();
   Index line = 0;
-  const bool in_a_line = moments.minCoeff(&line) <= 1e-12 * largest;
+  const bool in_a_line = moments.minCoeff(&line) <= straight * largest;
   if (!(largest > 0) || (in_a_line && !linear)) {
     throw Error(fmt::format("the sites of body '{}' are in a line, so it has two moments of inertia alone; give linear "
                             "= true if that is meant",
@@ -199,7 +199,21 @@ Vec3<double> spin_of(const RigidBody& body, const BodyState& state, const Quater
                 {.key = state.spin ? "spin" : "angular_velocity"});
   }
   const Mat3<double> r = rotation_matrix(q);
-  if (state.spin) return *state.spin;
+  const auto without_line = [&](Vec3<double> pi) {  // a body in a line has no turn about it
+    const double size = std::sqrt(norm2(pi));
+    for (int k = 0; k < 3; ++k) {
+      if (body.inertia[k] > 0 || pi[k] == 0) continue;
+      if (std::abs(pi[k]) > 1e-9 * size) {
+        throw Error(
+            fmt::format("body '{}' is a line, and has no spin about it; a spin across it is expected", body.name),
+            {.key = "spin"});
+      }
+      pi[k] = 0;
+    }
+    return pi;
+  };
+  const bool line = turning_freedoms(body.inertia) == 2;
+  if (state.spin) return line ? to_space(r, without_line(to_body(r, *state.spin))) : *state.spin;
   Vec3<double> in_body = state.spin_in_body.value_or(Vec3<double>::Zero());
   if (state.angular_velocity) in_body = state.angular_velocity->cwiseProduct(body.inertia);
   if (state.spin_period) {
@@ -213,7 +227,7 @@ Vec3<double> spin_of(const RigidBody& body, const BodyState& state, const Quater
     if (body.inertia[0] > body.inertia[axis]) axis = 0;
     in_body[axis] = body.inertia[axis] * 2 * std::acos(-1.0) / *state.spin_period;
   }
-  return to_space(r, in_body);
+  return to_space(r, line ? without_line(in_body) : in_body);
 }
 
 }  // namespace

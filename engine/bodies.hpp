@@ -113,8 +113,9 @@ RigidBody ellipsoid(std::string name, double mass, const Vec3<double>& semi_axes
 /// A body of mass points: mass, centre, principal axes and moments follow from its sites.
 /// @param sites  places in any axes [length], masses [mass], charges
 /// @param linear  that sites in a line are meant to be a body of two moments
+/// @param straight  the least moment by the largest at which sites are in a line
 /// @throws Error  for fewer than two sites, no mass, or sites in a line that nobody said are
-RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, bool linear = false);
+RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, bool linear = false, double straight = 1e-12);
 
 /// Where a body is, and how it moves and turns.
 struct BodyState {

@@ -77,7 +77,16 @@ class MakeRigid {
       : atoms_(atoms),
         tolerance_(tolerance),
         charges_(atoms.has<Charge>() ? &atoms.column<Charge>() : nullptr),
-        made_(atoms.units()) {}
+        made_(atoms.units()) {
+    const Topology* topology = atoms.topology();
+    if (topology == nullptr || topology->bonds.empty()) return;
+    bonded_.resize(static_cast<std::size_t>(atoms.size()));
+    for (const BondedTerm<2>& bond : topology->bonds) {
+      const auto [i, j] = bond.particles;
+      bonded_[static_cast<std::size_t>(i)].push_back(j);
+      bonded_[static_cast<std::size_t>(j)].push_back(i);
+    }
+  }
 
   ParticleSystem<double> make() {
     if (charges_ != nullptr) made_.add_column<Charge>();
@@ -106,16 +115,15 @@ class MakeRigid {
   void add_molecule(const Molecule& molecule) {
     const Index first = molecule.front();
     const Vec3<double> origin = atoms_.unwrapped(first);
-    std::vector<Vec3<double>> x;
+    std::vector<Vec3<double>> x = unfolded(molecule);
     Vec3<double> center = Vec3<double>::Zero(), v = center;
     double mass = 0;
     AtomKinds kind;
-    for (const Index i : molecule) {
-      const Vec3<double> away(atoms_.positions()[i] - atoms_.positions()[first]);
-      x.push_back(atoms_.box().minimum_image(away));
+    for (std::size_t k = 0; k < molecule.size(); ++k) {
+      const Index i = molecule[k];
       const double m = atoms_.masses()[i];
       mass += m;
-      center += m * x.back();
+      center += m * x[k];
       v += m * Vec3<double>(atoms_.velocities()[i]);
       kind.emplace_back(type(i), m, charge(i));
     }
@@ -145,16 +153,56 @@ class MakeRigid {
     types_.push_back(type(first));
   }
 
+  /// Places of the atoms from the first one: along bonds by nearest images, or of molecules by number all at once.
+  std::vector<Vec3<double>> unfolded(const Molecule& molecule) const {
+    const auto& x = atoms_.positions();
+    const auto image = [&](Index i, Index from) { return atoms_.box().minimum_image(Vec3<double>(x[i] - x[from])); };
+    std::vector<Vec3<double>> places(molecule.size(), Vec3<double>::Zero());
+    std::vector<bool> placed(molecule.size(), false);
+    placed[0] = true;
+    if (!atoms_.box().is_periodic() || bonded_.empty()) {
+      for (std::size_t k = 1; k < molecule.size(); ++k) {
+        places[k] = image(molecule[k], molecule[0]);
+        const bool whole = !atoms_.box().is_periodic() || places[k].norm() < atoms_.box().edges().minCoeff() / 4;
+        if (!whole) refuse_folded(molecule);
+      }
+      return places;
+    }
+    std::vector<std::size_t> open = {0};
+    while (!open.empty()) {
+      const std::size_t from = open.back();
+      open.pop_back();
+      for (const Index next : bonded_[static_cast<std::size_t>(molecule[from])]) {
+        const auto to =
+            static_cast<std::size_t>(std::lower_bound(molecule.begin(), molecule.end(), next) - molecule.begin());
+        if (placed[to]) continue;
+        placed[to] = true;
+        places[to] = places[from] + image(next, molecule[from]);
+        open.push_back(to);
+      }
+    }
+    return places;
+  }
+
+  [[noreturn]] void refuse_folded(const Molecule& molecule) const {
+    throw Error(
+        fmt::format("the molecule of '{}' reaches over a quarter of the box, and without bonds it cannot be told "
+                    "how; give bonds",
+                    atoms_.name(molecule.front())),
+        {.key = "molecules"});
+  }
+
   RigidBody body_of(const Molecule& molecule, const std::vector<Vec3<double>>& x) const {
     std::vector<BodySite> sites;
     for (std::size_t k = 0; k < molecule.size(); ++k) {
       const Index i = molecule[k];
       sites.push_back({x[k], atoms_.masses()[i], charge(i), type(i), atoms_.name(i)});
     }
+    const std::string& name = atoms_.name(molecule.front());
     try {
-      return body_of_sites(atoms_.name(molecule.front()), sites);
+      return body_of_sites(name, sites, true, 1e-5);  // two atoms, or carbon dioxide in the digits of a file
     } catch (const Error&) {
-      return body_of_sites(atoms_.name(molecule.front()), sites, true);  // two atoms, or carbon dioxide
+      return body_of_sites(name, sites);
     }
   }
 
@@ -183,6 +231,7 @@ class MakeRigid {
   double tolerance_;
   const ScalarColumn<double>* charges_;
   ParticleSystem<double> made_;
+  std::vector<std::vector<Index>> bonded_;  ///< to each atom; empty without bonds
   std::map<AtomKinds, RigidBody> kinds_;
   std::vector<std::int64_t> types_;
 };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -46,8 +47,18 @@ Topology topology_of_sites(const Topology* given, const Bodies& bodies, Index n,
     renamed(given->dihedrals, t.dihedrals);
     renamed(given->impropers, t.impropers);
     const auto at = [&](Index i) { return first[static_cast<std::size_t>(i)]; };
-    for (const auto& [i, j] : given->exclusions) t.exclusions.emplace_back(at(i), at(j));
+    const auto check = [&](Index i) {
+      const BodyKind* kind = bodies.kind(i);
+      if (kind == nullptr || kind->sites.size() == 1) return;
+      throw Error("the pair of a rigid body is excluded or scaled, but the body has several sites; take the pair out",
+                  {.key = "exclusions"});
+    };
+    for (const auto& [i, j] : given->exclusions) {
+      check(i), check(j);
+      t.exclusions.emplace_back(at(i), at(j));
+    }
     for (const auto& one : given->scaled_pairs) {
+      check(one.pair.first), check(one.pair.second);
       t.scaled_pairs.push_back({{at(one.pair.first), at(one.pair.second)}, one.factor});
     }
   }
@@ -69,7 +80,7 @@ Topology topology_of_sites(const Topology* given, const Bodies& bodies, Index n,
 
 }  // namespace
 
-template <class Real> Sites<Real>::Sites(const ParticleSystem<Real>& s) : particles_(s.units()) {
+template <class Real> Sites<Real>::Sites(const ParticleSystem<Real>& s, bool pairs) : particles_(s.units()) {
   NOETHER_EXPECTS(s.bodies() != nullptr, "sites are those of rigid bodies");
   const Bodies& bodies = *s.bodies();
   const ScalarColumn<Real>* charges = s.template has<Charge>() ? &s.template column<Charge>() : nullptr;
@@ -89,6 +100,11 @@ template <class Real> Sites<Real>::Sites(const ParticleSystem<Real>& s) : partic
     if (kind == nullptr) {
       add(s.name(i), s.masses()[i], Vec3<double>::Zero(), charges != nullptr ? (*charges)[i] : Real(0));
     } else {
+      double mass = 0;
+      for (const BodySite& site : kind->sites) mass += site.mass;
+      if (std::fabs(static_cast<double>(s.masses()[i]) - mass) > 1e-12 * mass) {
+        throw Error(fmt::format("the mass of body '{}' is not that of its sites; give it other sites too", s.name(i)));
+      }
       for (const BodySite& site : kind->sites) {
         const std::string name = fmt::format("{} of {}", site.name.empty() ? "site" : site.name, s.name(i));
         add(name, Real(site.mass == 0 ? mass_of_none : site.mass), site.place, Real(site.charge));
@@ -97,7 +113,10 @@ template <class Real> Sites<Real>::Sites(const ParticleSystem<Real>& s) : partic
     first_.push_back(particles_.size());
   }
   arms_ = VectorColumn<Real>(particles_.size());
-  particles_.set_topology(std::make_shared<const Topology>(topology_of_sites(s.topology(), bodies, s.size(), first_)));
+  if (pairs) {
+    particles_.set_topology(
+        std::make_shared<const Topology>(topology_of_sites(s.topology(), bodies, s.size(), first_)));
+  }
   particles_.set_box(s.box());
   follow(s);
 }

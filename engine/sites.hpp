@@ -14,7 +14,8 @@ template <class Real> class Sites {
  public:
   Sites() = default;
   /// @throws Error  for a bond of a body: what it is made of holds together without
-  explicit Sites(const ParticleSystem<Real>& s);
+  /// @param pairs  whether pairs within a body are listed as excluded, and types and bonds kept: not for gravity
+  explicit Sites(const ParticleSystem<Real>& s, bool pairs = true);
 
   /// Places the sites where the bodies are, at their stage time.
   void follow(const ParticleSystem<Real>& s);

@@ -142,7 +142,7 @@ void GravityOfBodies::add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s
   auto& here = out.workspace().template get<Pulling<Real>>();
   const bool by_sites = degree == Figure::sites && s.bodies() != nullptr;
   if (by_sites) {
-    if (!here.sites || here.members != s.members()) here.sites.emplace(s);
+    if (!here.sites || here.members != s.members()) here.sites.emplace(s, false);
     here.members = s.members();
     here.sites->follow(s);
   } else {

@@ -3,6 +3,7 @@
 #include "neighbors/neighbor_list.hpp"
 #include "numbers/cost_book.hpp"
 
+#include <algorithm>
 #include <optional>
 
 namespace noether {
@@ -19,6 +20,18 @@ template <class Real> struct Expanded {
 
 }  // namespace
 
+template <class Real> void OnSites<Real>::check_pairs(const ParticleSystem<Real>& s) const {
+  const auto& kinds = s.bodies()->kinds;
+  if (std::none_of(kinds.begin(), kinds.end(), [](const BodyKind& kind) { return kind.sites.size() > 1; })) return;
+  for (const AnyForce<Real>& force : forces_.terms()) {
+    const ForceClaims claims = force.claims();
+    const bool of_pairs = claims.keeps_momentum && !claims.bonded;  // a field acts on each site alone
+    if (!of_pairs || claims.exclusions.value_or(true)) continue;
+    throw Error("'" + force.name() + "' would act between the sites of a rigid body too" +
+                (claims.kepler ? "; use gravity_of_bodies" : "; take it out"));
+  }
+}
+
 template <class Real> void OnSites<Real>::add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
   auto& here = out.workspace().template get<Expanded<Real>>();
   if (!here.sites || here.members != s.members()) {
@@ -33,7 +46,8 @@ template <class Real> void OnSites<Real>::add_to(ForceSink<Real>& out, const Par
   }
   const ParticleSystem<Real>& sites = here.sites->particles();
   const Request wanted{.energy = out.wants_energy(), .virial = out.wants_virial()};
-  ForceSink<Real> sink(here.a, sites, wanted, &here.workspace, out.kick());
+  // Without the length of kicks: a site moves with its body, whatever its own mass.
+  ForceSink<Real> sink(here.a, sites, wanted, &here.workspace);
   if (!out.takes_all()) sink.set_kick_letter(out.kick_letter());
   forces_.add_to(sink, sites);
   if (wanted.energy) out.energy(sink.potential());

@@ -19,7 +19,6 @@ namespace noether {
 /// @cost that of the forces on the sites, and two passes over them
 template <class Real> class OnSites {
  public:
-  /// @throws Error  for a force that does not leave out pairs within a body, though there are such
   explicit OnSites(ForceField<Real> forces) : forces_(std::move(forces)) {}
 
   std::string name() const { return "on_sites"; }
@@ -31,16 +30,25 @@ template <class Real> class OnSites {
     claims.range = 0;  // of centres: sites have a list of their own
     return claims;
   }
+  /// @throws Error  for a force between particles that does not leave out pairs within a body, though there are such
   template <class Number> void check(const ParticleSystem<Number>& s) const {
-    if constexpr (std::is_same_v<Number, Real>) forces_.check(Sites<Real>(s).particles());
+    if constexpr (std::is_same_v<Number, Real>) {
+      check_pairs(s);
+      forces_.check(Sites<Real>(s).particles());
+    }
   }
   template <class Number> void bind(const ParticleSystem<Number>& s) {
-    if constexpr (std::is_same_v<Number, Real>) forces_.bind(Sites<Real>(s).particles());
+    if constexpr (std::is_same_v<Number, Real>) {
+      check_pairs(s);
+      forces_.bind(Sites<Real>(s).particles());
+    }
   }
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
   const ForceField<Real>& forces() const { return forces_; }
 
  private:
+  void check_pairs(const ParticleSystem<Real>& s) const;
+
   ForceField<Real> forces_;
 };
 

@@ -93,8 +93,8 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     bind_force(forces_, s);
     const ForceClaims claims = claims_of(forces_);
     kicks_.clear();
-    twists_ = s.template has<BodySpin>();
-    holds_ = s.bodies() != nullptr && s.bodies()->any_held();
+    twists_ = s.bodies() != nullptr;
+    holds_ = twists_ && s.bodies()->any_held();
     for (const char letter : letters_of(claims)) kicks_.emplace_back(letter, s.size(), twists_);
     workspace_ = Workspace();
     workspace_.put(NeighborList(claims.range, neighbor_options_));
@@ -182,7 +182,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   /// Sum x (x) f, the forces of constraints too [energy]; empty if a force does not tell it, or a constraint holds
   /// particles in place. Once asked for, it is summed along with the energy.
   std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) {
-    if (!claims_of(forces_).virial) return {};
+    if (!claims_of(forces_).virial || holds_) return {};
     if constexpr (constrained) {
       if (!constraints_.set().keeps_momentum()) return {};
     }
@@ -351,7 +351,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   F forces_;
   typename C::template Solver<Real> constraints_;
   std::vector<Kick> kicks_{Kick('B', 0, false)};  ///< one for each letter
-  bool twists_ = false;                           ///< whether particles have spins
+  bool twists_ = false;                           ///< whether there are rigid bodies
   bool holds_ = false;                            ///< whether fixed points hold some of the bodies
   bool virial_wanted_ = false;
   std::optional<Request> observing_;

@@ -297,6 +297,7 @@ class Descent {
 Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options,
                    MinimizeAlong* along) {
   options.check();
+  if (s.bodies() != nullptr) throw Error("some particles are rigid bodies, which a minimization cannot turn");
   const ForceClaims claims = forces.claims();
   if (claims.velocity_dependent || claims.time_dependent || claims.dissipative) {
     throw Error("a force depends on velocities or time, so there is no minimum to move to; leave it out");

@@ -109,7 +109,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
 
 /// @throws Error  for a body that a fixed point holds, and for torques beside forces that depend on velocities
 template <class Real, class F> void WisdomHolman<Real, F>::bind_spins(const ParticleSystem<Real>& s) {
-  twists_ = s.template has<BodySpin>();
+  twists_ = s.bodies() != nullptr;
   torque_ = VectorColumn<Real>(twists_ ? s.size() : 0);
   if (s.bodies() != nullptr && s.bodies()->any_held()) {
     throw Error("a fixed point holds one of the bodies, which cannot be on a Kepler arc; use kinetic_potential");

@@ -54,6 +54,7 @@ class SiteTable {
   struct Found {
     std::size_t known;
     double unit = 1;
+    bool has_unit = false;
   };
 
   void read_headings(std::size_t line, const std::vector<std::string>& fields) {
@@ -71,17 +72,19 @@ class SiteTable {
       const auto at = static_cast<std::size_t>(found - site_columns.begin());
       if (has(found->name)) text_.fail(line, fmt::format("column '{}' appears twice", heading.name), heading.name);
       Found column{at};
+      column.has_unit = heading.unit.has_value();
       if (heading.unit) column.unit = unit_of(line, heading, *found);
-      if (at < 3 && heading.unit) of_place = column.unit;
+      if (at < 3 && heading.unit && !of_place) of_place = column.unit;
       if (!heading.unit && !found->dimension.empty() && at > 2 && !units_.is_reduced()) refuse_unit(line, found->name);
       columns_.push_back(column);
     }
     for (const std::string_view name : {"x", "y", "z", "mass"}) {
       if (!has(name)) text_.fail(line, fmt::format("there is no column '{}'", name));
     }
+    if (types_.size() > 1 && !has("type")) text_.fail(line, "there is no column 'type', but there are several types");
     if (!of_place && !units_.is_reduced()) refuse_unit(line, "x");
     for (Found& column : columns_) {
-      if (column.known < 3) column.unit = of_place.value_or(1);
+      if (column.known < 3 && !column.has_unit) column.unit = of_place.value_or(1);
     }
   }
 

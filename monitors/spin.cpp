@@ -27,9 +27,10 @@ template <class Real> Vec3<Real> unit_vector(const Vec3<Real>& v) {
 
 void Spin::check() const {
   check_constant_of_gravitation(G);
-  if (resonance.size() == 2 && resonance[1] > 0) return;
+  // The angle is that of an axis without a front: M wraps by 2 pi, which p/q makes whole half turns for these alone.
+  if (resonance.size() == 2 && (resonance[1] == 1 || resonance[1] == 2)) return;
   refuse_field("resonance", fmt::format("[{}]", fmt::join(resonance, ", ")),
-               "is not a valid resonance; two whole numbers such as [3, 2], the second above 0, are expected");
+               "is not a valid resonance; two whole numbers such as [3, 2], the second 1 or 2, are expected");
 }
 
 template <class Real> Index Spin::body_of(const ParticleSystem<Real>& s) const {

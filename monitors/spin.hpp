@@ -47,7 +47,7 @@ class Spin {
         state<&Spin::name_>("name"), state<&Spin::slope_unit_>("slope_unit"));
   }
 
-  /// @throws Error  for a resonance that is not of two whole numbers, the second above 0
+  /// @throws Error  for a resonance that is not of two whole numbers, the second 1 or 2
   void check() const;
   /// @throws Error  for a body that is not there or does not turn
   template <class Real> void check(const ParticleSystem<Real>& s) const;

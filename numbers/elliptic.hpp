@@ -26,6 +26,7 @@ template <class Real> JacobiFunctions<Real> jacobi_functions(const Real& u, cons
     const Real sech = Real(1) / cosh(u);
     return {tanh(u), sech, sech};
   }
+  if (fabs(u) < sqrt(std::numeric_limits<Real>::min())) return {u, Real(1), Real(1)};  // 1/u^2 would overflow
   static constexpr int most = 16;
   // The means agree to half the digits: the next round would make them agree to all.
   const Real near_enough = sqrt(std::numeric_limits<Real>::epsilon()) / Real(16);

@@ -146,6 +146,14 @@ class TypedBodies {
     if (!topology_.types.empty()) site.type = static_cast<int>(topology_.types.back());
   }
 
+  /// Gives sites without a charge that of their type.
+  void complete(std::vector<BodySite>& sites) const {
+    for (BodySite& site : sites) {
+      if (site.charge != 0 || types_.empty()) continue;
+      site.charge = types_[static_cast<std::size_t>(site.type)].charge.value_or(0);
+    }
+  }
+
   void give_to(ParticleSystem<double>& s, TableReader& reader) {
     if (std::any_of(charges_.begin(), charges_.end(), [](const auto& charge) { return charge.has_value(); })) {
       auto& column = s.add_column<Charge>();
@@ -266,6 +274,7 @@ class BodyTables {
     RigidBody made = read_rigid_body(body, name, mass, options_.folder, typed_.names(), kept);
     if (!made.warning.empty()) warnings_.push_back(made.warning);
     if (made.sites.size() == 1) typed_.give_last_to(made.sites.front());
+    typed_.complete(made.sites);
     BodyState turn = read_turn(body);
     if (made.held) {
       turn.x = column(*body.vector("fixed_point", "length"));

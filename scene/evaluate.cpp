@@ -89,7 +89,8 @@ Evaluation evaluate(const Scene& scene, bool check) {
   result.gradient_asked = check ? particles_asked(s.size()) : 0;
   VectorColumn<double> a(s.size());
   // Constraints have a part in the virial, which is not looked at here.
-  bool has_pressure = s.box().is_periodic() && scene.hamiltonian.constraints.empty();
+  bool has_pressure =
+      s.box().is_periodic() && scene.hamiltonian.constraints.empty() && !(has_bodies(s) && s.bodies()->any_held());
   std::size_t own = scene.hamiltonian.splitting.own.size();  // these pull at centres of bodies
   for (const SceneForce& term : scene.hamiltonian.terms()) {
     ForceSink<double> sink(a, s, {.energy = true, .virial = true});

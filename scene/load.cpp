@@ -1,6 +1,5 @@
 #include "scene/scene.hpp"
 
-#include "forces/on_sites.hpp"
 #include "integrators/all_schemes.hpp"
 #include "io/files.hpp"
 #include "numbers/suggest.hpp"
@@ -272,6 +271,11 @@ class SceneReader {
     NeighborOptions options;
     read_part(reader, options);
     const SceneHamiltonian& made = scene_.hamiltonian;
+    if (made.rotating) {
+      reader.fail(nullptr, "neighbors",
+                  "sites of rigid bodies have a neighbor list of their own, with the default options; take "
+                  "[hamiltonian.neighbors] out");
+    }
     const bool any = std::any_of(made.forces.begin(), made.forces.end(),
                                  [](const SceneForce& force) { return force.force.claims().range > 0; });
     if (!any || !made.splitting.claims().neighbors) {
@@ -293,11 +297,10 @@ class SceneReader {
     SceneForce force = noether::read_force(reader, *kind, &scene_.particles, effective);
     check_force_beside(reader, *kind, force, scene_.hamiltonian, parts_);
     set_kick(reader, force);
-    if (scene_.hamiltonian.rotating) check_force_on_bodies(reader, *kind, force, scene_.particles);
+    if (scene_.hamiltonian.rotating) check_force_on_bodies(reader, *kind, force);
     if (!force.letter) {
       try {
-        const bool on_sites = scene_.hamiltonian.rotating && !force.force.claims().on_bodies;
-        force.force.check(on_sites ? Sites<double>(scene_.particles).particles() : scene_.particles);
+        scene_.hamiltonian.on_bodies(force.force).check(scene_.particles);
       } catch (const Error& error) {
         const SceneValue* file = root_.find("particles")->find("structure");
         const bool of_file = error.key() == "structure" && file != nullptr;

@@ -1,6 +1,5 @@
 #include "scene/read_force.hpp"
 
-#include "engine/bodies.hpp"
 #include "scene/read_tied.hpp"
 
 #include <fmt/format.h>
@@ -113,8 +112,7 @@ void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind,
   }
 }
 
-void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
-                           const ParticleSystem<double>& s) {
+void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force) {
   const ForceClaims claims = force.force.claims();
   if (claims.on_bodies) return;
   if (force.letter) {
@@ -124,13 +122,6 @@ void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& ki
   }
   if (kind.particles > 0) {
     reader.fail("type", fmt::format("{} ties particles, and cannot tie the sites of rigid bodies; take it out",
-                                    kind.info.name));
-  }
-  const auto& kinds = s.bodies()->kinds;
-  const bool any_pair =
-      std::any_of(kinds.begin(), kinds.end(), [](const BodyKind& body) { return body.sites.size() > 1; });
-  if (any_pair && claims.kepler) {
-    reader.fail("type", fmt::format("{} would act between the sites of a rigid body too; use gravity_of_bodies",
                                     kind.info.name));
   }
 }

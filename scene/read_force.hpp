@@ -24,7 +24,6 @@ void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind,
 
 /// Refuses a force that cannot act on the sites of rigid bodies, or on bodies themselves.
 /// @throws SceneError
-void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
-                           const ParticleSystem<double>& s);
+void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force);
 
 }  // namespace noether

@@ -563,7 +563,7 @@ void read_after(TableReader& reader, const SceneIntegrator& integrator, Cadence&
     first = start + cadence.interval * std::ceil((time - start) / cadence.interval * (1 - 1e-12));
   }
   const auto length = integrator.length();
-  const double grace = integrator.adaptive() ? 0 : std::abs(integrator.step) / 2;
+  const double grace = integrator.adaptive() ? 1e-12 * std::abs(first - start) : std::abs(integrator.step) / 2;
   if (length && std::abs(first - start) > std::abs(*length) + grace) {
     const std::string end = time_text(start + *length, units);
     fail(sign * (time - start - *length) > grace

@@ -230,6 +230,9 @@ void read_molecules(TableReader& reader, ParticleSystem<double>& s, SceneValue& 
   if (text != "rigid") {
     reader.fail("molecules", fmt::format("unknown molecules '{}'{}", text, did_you_mean(text, {"rigid"})));
   }
+  if (reader.has("exclusions")) {
+    reader.fail("exclusions", "exclusions name atoms, which rigid molecules no longer have; take exclusions out");
+  }
   try {
     s = make_rigid(s);
   } catch (const Error& error) {

@@ -28,6 +28,10 @@ BodySite read_site(TableReader& reader, const std::vector<std::string>& types) {
     reader.fail("mass", fmt::format("mass = {} is below 0; 0 or more is expected", to_text(*reader.find("mass"))));
   }
   site.charge = reader.quantity("charge", "charge").value_or(0);
+  if (!reader.has("type") && types.size() > 1) {
+    reader.fail(nullptr, "type",
+                fmt::format("{} has no type, but there are {} types; give one", reader.what(), types.size()));
+  }
   if (!reader.has("type")) return site;
   const std::string type = reader.text("type");
   const auto found = std::find(types.begin(), types.end(), type);
@@ -120,6 +124,9 @@ RigidBody read_rigid_body(TableReader& body, const std::string& name, double mas
     if (by_sites) {
       if (body.has("mass")) {
         body.fail("mass", fmt::format("{} has the mass of its sites; take mass out", body.what()));
+      }
+      for (const char* key : {"charge", "type"}) {
+        if (body.has(key)) body.fail(key, fmt::format("{} has sites, each with its {}; take it out", body.what(), key));
       }
       return body_of_sites(name, read_sites(body, folder, types, effective), body.flag("linear", false));
     }

@@ -138,8 +138,8 @@ TEST_CASE("sweeps stop at their tolerance, count themselves, and fail by name at
     CHECK(error < before);
     CHECK(error < 2e4 * tolerance);
     before = error;
-    CHECK(sim.evaluations().constraint > fewer);
-    fewer = sim.evaluations().constraint;
+    CHECK(sim.evaluations().constraint.iterations > fewer);
+    fewer = sim.evaluations().constraint.iterations;
   }
   const Mechanism few = hanging_chain(10, {.solver = ConstraintMethod::rattle, .tolerance = 1e-12, .iterations = 3});
   Simulation<double> sim(few.particles, compose(hamiltonian_of(few), schemes::verlet), 0.01);
@@ -232,12 +232,12 @@ TEST_CASE("bits do not depend on threads, on who looks, on a save in between, no
   restored.restore(watched.save());
   REQUIRE(restored.run(13).ok());
   CHECK(distance_of_states(restored.particles(), straight) == 0);
-  CHECK(restored.evaluations().constraint > 0);
+  CHECK(restored.evaluations().constraint.iterations > 0);
   Simulation<double> erased(chain.particles, compose(AnyHamiltonian<double>(hamiltonian_of(chain)), schemes::verlet),
                             0.01);
   REQUIRE(erased.run(24).ok());
   CHECK(distance_of_states(erased.particles(), straight) == 0);
-  CHECK(erased.evaluations().constraint == restored.evaluations().constraint);
+  CHECK(erased.evaluations().constraint.iterations == restored.evaluations().constraint.iterations);
 }
 
 TEST_CASE("a run saved, rebuilt and restored goes on bit for bit, for every scheme and both solvers",
@@ -258,7 +258,7 @@ TEST_CASE("a run saved, rebuilt and restored goes on bit for bit, for every sche
       second.restore(first.save());
       REQUIRE(second.run(7).ok());
       CHECK(distance_of_states(whole.particles(), second.particles()) == 0);
-      CHECK(whole.evaluations().constraint == second.evaluations().constraint);
+      CHECK(whole.evaluations().constraint.iterations == second.evaluations().constraint.iterations);
       CHECK(residual.report().rms == restored.report().rms);
       CHECK(residual.report().samples == restored.report().samples);
     }

@@ -75,7 +75,7 @@ TEST_CASE("a needle and a disc in a field keep their energy", "[extremes][bodies
     ParticleSystem<double> s(unit_system("reduced"));
     add_body(s, top("top", 1, inertia, {0.2, 0, 0.1}), {.angular_velocity = Vec3<double>(3, 0.3, 2)});
     const auto error = [&](double h) {
-      Simulation sim(s, compose(turning(test::weight()), *schemes::find("srkn11b")), h);
+      Simulation sim(s, compose(turning(test::weight_on_sites()), *schemes::find("srkn11b")), h);
       auto& energy = sim.every(1, Energy{});
       REQUIRE(sim.run(std::lround(20 / h)).ok());
       return energy.worst();

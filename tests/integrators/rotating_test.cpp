@@ -13,7 +13,7 @@
 namespace noether {
 namespace {
 
-using test::heavy_top, test::turning, test::weight;
+using test::heavy_top, test::turning, test::weight_on_sites;
 
 /// The larger of the largest errors of R and of Pi, relative to the largest Pi at the start.
 double error_of(const ParticleSystem<double>& s, const Mat3<double>& r, const Vec3<double>& in_body, double size) {
@@ -23,7 +23,7 @@ double error_of(const ParticleSystem<double>& s, const Mat3<double>& r, const Ve
 
 /// Of the heavy top A at t = 10. Reference by extrapolation in 28 to 40 digits, by extrapolation in 28 to 40 digits
 double top_error(const std::string& scheme, double h, RotatingOptions options = {}) {
-  Simulation sim(heavy_top(), compose(turning(weight(), std::move(options)), *schemes::find(scheme)), h);
+  Simulation sim(heavy_top(), compose(turning(weight_on_sites(), std::move(options)), *schemes::find(scheme)), h);
   REQUIRE(sim.run(std::lround(10 / h)).ok());
   Mat3<double> r;
   r << 0.63061869068486407790, 0.41148720346445770423, -0.6580261000476407484, 0.13793808901625566150,
@@ -59,7 +59,7 @@ TEST_CASE("a heavy top has the errors and orders of its methods", "[integrators]
 
 TEST_CASE("a top keeps the vertical part of its angular momentum", "[integrators][rotating]") {
   for (const Rotor rotor : {Rotor::exact, Rotor::axes}) {
-    Simulation sim(heavy_top(), compose(turning(weight(), {.rotor = rotor}), schemes::verlet), 0.1);
+    Simulation sim(heavy_top(), compose(turning(weight_on_sites(), {.rotor = rotor}), schemes::verlet), 0.1);
     REQUIRE(sim.run(1000).ok());
     CHECK(std::abs(sim.particles().column<BodySpin>()[0][2] - 0.9) < 3e-15);
     CHECK(std::abs(norm_defect<double>(sim.particles().column<BodyOrientation>()[0])) < 1e-15);
@@ -79,7 +79,7 @@ TEST_CASE("a top of 150 rad/s is followed by its exact turns", "[integrators][ro
     ParticleSystem<double> s(unit_system("reduced"));
     add_body(s, top("top", 15, {15.234375, 0.46875, 15.234375}, {0, 1, 0}),
              {.angular_velocity = Vec3<double>(0, 150, -4.61538)});
-    Simulation sim(s, compose(turning(weight(9.81), std::move(options)), *schemes::find(scheme)), 0.002);
+    Simulation sim(s, compose(turning(weight_on_sites(9.81), std::move(options)), *schemes::find(scheme)), 0.002);
     REQUIRE(sim.run(500).ok());
     return sim.particles();
   };
@@ -99,7 +99,7 @@ TEST_CASE("Lagrange's top nods and goes round as its quadratures say", "[integra
       s, top("top", 1, {1, 1, 0.5}, {0, 0, 1}),
       {.orientation = {std::cos(theta / 2), 0, std::sin(theta / 2), 0}, .angular_velocity = Vec3<double>(0, 0, 6)});
   const int steps = 262;  // of a period, some 0.01 each
-  Simulation sim(s, compose(turning(weight()), *schemes::find("srkn14a")), period / steps);
+  Simulation sim(s, compose(turning(weight_on_sites()), *schemes::find("srkn14a")), period / steps);
   REQUIRE(sim.run(steps).ok());
   const Vec3<double> axis = test::matrix_of(sim.particles()).col(2);
   CHECK(std::abs(axis[2] - std::cos(theta)) < 1e-10);
@@ -114,7 +114,7 @@ TEST_CASE("the shadow of a top is flatter with every order, by both rotors", "[i
   };
   const auto check = [](Rotor rotor, const Figures& wanted) {
     CAPTURE(wanted.h);
-    Simulation sim(heavy_top(), compose(turning(weight(), {.rotor = rotor}), schemes::verlet), wanted.h);
+    Simulation sim(heavy_top(), compose(turning(weight_on_sites(), {.rotor = rotor}), schemes::verlet), wanted.h);
     auto& shadow = sim.every(1, ShadowHamiltonian<double>({4, 8, 12}));
     REQUIRE(sim.run(std::lround(10 / wanted.h)).ok());
     const double scale = *shadow.scale();
@@ -219,7 +219,7 @@ TEST_CASE("methods that cannot turn bodies refuse them", "[integrators][rotating
   };
   const RotatingOptions axes{.rotor = Rotor::axes};
   const auto by = [&](const std::string& scheme) {
-    return refusal([&] { compose(turning(weight(), axes), *schemes::find(scheme)); });
+    return refusal([&] { compose(turning(weight_on_sites(), axes), *schemes::find(scheme)); });
   };
   CHECK(
       by("blanes_moan_s6").find("needs exact flows, but part A of 'kinetic_potential' is a symmetric map of order 2") !=
@@ -227,12 +227,12 @@ TEST_CASE("methods that cannot turn bodies refuse them", "[integrators][rotating
   CHECK(by("srkn14a").find("needs exact flows") != std::string::npos);
   CHECK(by("yoshida_4") == "none");
   CHECK(refusal([&] {
-          Simulation sim(heavy_top(), compose(KineticPotential(weight()), schemes::verlet), 0.1);
+          Simulation sim(heavy_top(), compose(KineticPotential(weight_on_sites()), schemes::verlet), 0.1);
         }).find("some particles are rigid bodies, but 'kinetic_potential' does not turn them") != std::string::npos);
   CHECK(refusal([&] {
           ParticleSystem<double> points(unit_system("reduced"));
           points.add("a", 1, {0, 0, 0}, {0, 0, 0});
-          Simulation sim(points, compose(turning(weight()), schemes::verlet), 0.1);
+          Simulation sim(points, compose(turning(weight_on_sites()), schemes::verlet), 0.1);
         }) == "there are no rigid bodies to turn; add some, or take Rotating out");
 }
 

@@ -31,7 +31,7 @@ template <class... Fs> ForceField<double> on_sites(const Fs&... forces) {
   outer.add(OnSites<double>(std::move(sum)));
   return outer;
 }
-inline ForceField<double> weight(double g = 1) { return on_sites(UniformField{{0, 0, -g}}); }
+inline ForceField<double> weight_on_sites(double g = 1) { return on_sites(UniformField{{0, 0, -g}}); }
 
 /// Bodies under forces on themselves.
 inline Rotating<AnyHamiltonian<double>> turning(ForceField<double> forces, RotatingOptions options = {}) {
