@@ -68,6 +68,7 @@ inline std::int64_t next_multiple(std::int64_t step, std::int64_t cadence) {
 struct Looks : Schedule {
   std::int64_t in_a_row = 1;                ///< steps to look at, from each multiple or listed one on
   std::vector<std::int64_t> at_steps = {};  ///< those of `times`, where the clock is fixed; they rise
+  std::optional<double> from = {};          ///< `after` of a fixed clock, which `first` has turned into steps [time]
   std::int64_t first = 0;                   ///< the multiple from which on to look, where the clock is fixed
 
   /// Whether steps tell when to look.

@@ -106,8 +106,9 @@ template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
   }
   if (added.schedule.steps == 0 && added.schedule.wall == 0) schedule_by_time(added);
   if (added.schedule.after && raw_.clock().mode() == ClockMode::fixed) {  // steps tell from here on
-    added.schedule.first = detail::first_multiple(*std::exchange(added.schedule.after, {}), raw_.clock().start(),
-                                                  raw_.clock().dt(), added.schedule.steps);
+    added.schedule.from = std::exchange(added.schedule.after, {});
+    added.schedule.first =
+        detail::first_multiple(*added.schedule.from, raw_.clock().start(), raw_.clock().dt(), added.schedule.steps);
   }
   check_wanted(added);
 }

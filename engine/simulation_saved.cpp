@@ -69,6 +69,7 @@ template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
     const Clock<Real>& clock = raw_.clock();  // of the saved run, which may have begun at another time
     if (!looks.at_steps.empty())
       looks.at_steps = detail::steps_at(looks.times, clock.start(), clock.dt(), scheduled.name);
+    if (looks.from) looks.first = detail::first_multiple(*looks.from, clock.start(), clock.dt(), looks.steps);
     load_value(part(scheduled.name), "observed", scheduled.observed);
     scheduled.monitor.load(part(scheduled.name), "state");
   }
