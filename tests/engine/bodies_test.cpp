@@ -1,11 +1,13 @@
 /// Rigid bodies: what they are made of, where they begin, and what is refused.
 
 #include "engine/bodies.hpp"
+#include "engine/make_rigid.hpp"
 #include "engine/sites.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -138,6 +140,31 @@ TEST_CASE("bodies that cannot be are refused, and odd ones told", "[engine][bodi
   CHECK(refusal([&] { add_body(s, body, {.spin_period = 0}); }).find("a time other than 0 is expected") !=
         std::string::npos);
   CHECK(s.size() == 0);
+}
+
+TEST_CASE("a line has no spin about itself", "[engine][bodies]") {
+  ParticleSystem<double> s(unit_system("reduced"));
+  const RigidBody rod = body_of_inertia("rod", 1, {0, 2, 2});
+  CHECK(refusal([&] { add_body(s, rod, {.spin = Vec3<double>(1, 0, 0.1)}); }) ==
+        "body 'rod' is a line, and has no spin about it; a spin across it is expected");
+  const Index i = add_body(s, rod, {.spin = Vec3<double>(1e-12, 0, 1)});
+  CHECK(std::as_const(s).column<BodySpin>()[i] == Vec3<double>(0, 0, 1));
+}
+
+TEST_CASE("molecules over half of their box are unfolded along bonds", "[engine][bodies]") {
+  ParticleSystem<double> s(unit_system("reduced"));
+  Topology chain;
+  for (Index k = 0; k < 6; ++k) {
+    s.add("bead", 1, {0.5 * static_cast<double>(k), k == 5 ? 0.3 : 0, 0}, {0, 0, 0});
+    if (k > 0) chain.bonds.push_back({{k - 1, k}, 0});
+  }
+  s.set_topology(std::make_shared<const Topology>(chain));
+  s.set_box(Box::periodic({4, 4, 4}));
+  const ParticleSystem<double> body = make_rigid(s);
+  REQUIRE(body.size() == 1);
+  const auto& sites = body.bodies()->kind(0)->sites;
+  CHECK(std::abs((sites[0].place - sites[5].place).norm() - std::hypot(2.5, 0.3)) < 1e-14);
+  CHECK(body.masses()[0] == 6);
 }
 
 }  // namespace noether

@@ -254,4 +254,59 @@ TEST_CASE("a site without mass hands its force on", "[forces][bodies]") {
   CHECK(s.masses()[0] == 4);
 }
 
+TEST_CASE("molecules with a charge on a site without mass run in a box", "[forces][bodies]") {
+  Topology types;
+  types.type_names = {"O", "H", "M"};
+  types.pair_kinds = {{0.65, 0.3154}, {0, 1}, {0, 1}};
+  types.types = {0, 0};
+  ParticleSystem<double> s(unit_system("molecular"));
+  std::vector<BodySite> sites(4);  // as TIP4P has them
+  sites[0] = {.place = {0, 0, 0}, .mass = 15.9994, .charge = 0, .type = 0};
+  sites[1] = {.place = {0.0757, 0.0586, 0}, .mass = 1.008, .charge = 0.52, .type = 1};
+  sites[2] = {.place = {-0.0757, 0.0586, 0}, .mass = 1.008, .charge = 0.52, .type = 1};
+  sites[3] = {.place = {0, 0.015, 0}, .mass = 0, .charge = -1.04, .type = 2};
+  const RigidBody water = body_of_sites("water", sites);
+  add_body(s, water, {.x = {0.3, 0.3, 0.3}});
+  add_body(s, water, {.x = {0.6, 0.35, 0.3}, .orientation = {0.5, 0.1, 0.7, -0.2}});
+  s.set_topology(std::make_shared<const Topology>(types));
+  s.set_box(Box::periodic({2, 2, 2}));
+  LennardJonesForce lj;
+  lj.cutoff = 0.8;
+  lj.cutoff_style = Cutoff::switch_c4;
+  ForceField<double> all;
+  all.add(OnSites<double>(ForceField<double>().add(lj).add(ReactionFieldForce{{.radius = 0.8}})));
+  const auto error = [&](double h) {
+    Simulation sim(s, compose(turning(all), schemes::verlet), h);
+    auto& energy = sim.every(1, Energy{});
+    REQUIRE(sim.run(std::lround(0.2 / h)).ok());
+    return energy.worst();
+  };
+  CHECK(error(0.001) / error(0.0005) > 3);
+}
+
+TEST_CASE("what cannot act on the sites of bodies is refused", "[forces][bodies]") {
+  const auto refusal = [](const auto& make) {
+    try {
+      make();
+    } catch (const Error& error) {
+      return error.message();
+    }
+    return std::string("none");
+  };
+  CHECK(refusal([] { Simulation(two_octahedra(), compose(turning(on_sites(Gravity{})), schemes::verlet), 0.01); }) ==
+        "'gravity' would act between the sites of a rigid body too; use gravity_of_bodies");
+  CHECK(refusal([] {
+          ParticleSystem<double> s = two_octahedra();
+          Topology pairs;
+          pairs.exclusions = {{0, 1}};
+          s.set_topology(std::make_shared<const Topology>(pairs));
+          Sites<double> sites(s);
+        }).find("has several sites; take the pair out") != std::string::npos);
+  CHECK(refusal([] {
+          ParticleSystem<double> s = two_octahedra();
+          s.masses()[0] = 2;
+          Sites<double> sites(s);
+        }) == "the mass of body 'a' is not that of its sites; give it other sites too");
+}
+
 }  // namespace noether
