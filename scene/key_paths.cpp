@@ -3,6 +3,7 @@
 #include "engine/neighbor_options.hpp"
 #include "integrators/composition_options.hpp"
 #include "integrators/minimize.hpp"
+#include "integrators/rotating.hpp"
 #include "scene/foreign_names.hpp"
 #include "scene/read_builder.hpp"
 
@@ -84,6 +85,7 @@ class PathCollector {
     if (key == "hamiltonian") {
       add_fields(keys, parts_.hamiltonians(), type);
       keys.insert(keys.end(), {"type", "G", "force", "constraint", "thermostat", "neighbors"});
+      for_each_field<RotatingOptions>([&](const auto& f) { keys.emplace_back(f.name); });
     }
     if (key == "force") {
       add_fields(keys, parts_.forces(), type);

@@ -157,14 +157,13 @@ class WithoutThirdAxis : public Wrapped<AnyHamiltonian<double>> {
     static_cast<void>(flow_with_action(letter, s, h));
   }
   double flow_with_action(char letter, ParticleSystem<double>& s, const double& h) {
-    double action = 0;
+    const double action = letter == 'A' ? h * turning_energy_of(s) : 0;
     for (Index i = 0; letter == 'A' && i < s.size(); ++i) {
       auto& orientation = s.column<BodyOrientation>();
       const Turned<double> turned =
           turn_by_axes<double>(std::as_const(orientation)[i], std::as_const(s).column<BodySpin>()[i],
                                std::as_const(s).column<BodyInertia>()[i], h, {0, 1, 0});
       orientation.set(i, turned.orientation);
-      action += turned.action;
     }
     return action + Wrapped::flow_with_action(letter, s, h);
   }
