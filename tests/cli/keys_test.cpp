@@ -125,9 +125,8 @@ TEST_CASE("docs/keys.md lists every key that the readers of scenes name", "[cli]
   const std::string page = read_text(root / "docs" / "keys.md");
   const std::regex list(R"((?:expect_only\(\{|\w+ \w+\* key : \{)([^}]*)\})"), word(R"re("([a-zA-Z]\w*)")re");
   int found = 0;
-  for (const char* file :
-       {"body_tables.cpp", "load.cpp", "particle_keys.cpp", "read_integrator.cpp", "read_particles.cpp",
-        "read_rigid_body.cpp", "read_structure.cpp", "read_verdicts.cpp"}) {
+  for (const char* file : {"body_tables.cpp", "load.cpp", "particle_keys.cpp", "read_integrator.cpp",
+                           "read_particles.cpp", "read_rigid_body.cpp", "read_structure.cpp", "read_verdicts.cpp"}) {
     const std::string text = read_text(root / "scene" / file);
     for (std::sregex_iterator at(text.begin(), text.end(), list), end; at != end; ++at) {
       const std::string names = (*at)[1].str();

@@ -74,8 +74,8 @@ TEST_CASE("a needle and a disc in a field keep their energy", "[extremes][bodies
   struct Shape {
     Vec3<double> inertia, weight;  // the needle's weight lies on its axis: beside it, it would spin up without bound
   };
-  for (const auto& [inertia, weight] : {Shape{{1e-6, 1, 1.0000001}, {0.2, 0, 0}},
-                                        Shape{{1, 1, 1.999999}, {0.2, 0, 0.1}}}) {
+  for (const auto& [inertia, weight] :
+       {Shape{{1e-6, 1, 1.0000001}, {0.2, 0, 0}}, Shape{{1, 1, 1.999999}, {0.2, 0, 0.1}}}) {
     ParticleSystem<double> s(unit_system("reduced"));
     add_body(s, top("top", 1, inertia, weight), {.angular_velocity = Vec3<double>(3, 0.3, 2)});
     const auto error = [&](double h) {
