@@ -3,6 +3,7 @@
 #include "constraints/constraint_set.hpp"
 #include "engine/neighbor_options.hpp"
 #include "integrators/composition_options.hpp"
+#include "integrators/rotating.hpp"
 #include "scene/minimize.hpp"
 
 #include <initializer_list>
@@ -69,6 +70,13 @@ SceneTable particles() {
           {"structure", "text", "1", "", "file of a structure: LAMMPS data, (extended) XYZ or .gro"},
           {"structure_sha256", "text", "1", "", "the SHA-256 of the file; another file is refused"},
           {"type", "text", "1", "", "a builder; its keys are in this table too"},
+          {"molecules",
+           "choice",
+           "1",
+           "",
+           "\"rigid\" makes each molecule of a structure one rigid body",
+           "",
+           {"rigid"}},
           {"frame",
            "choice",
            "1",
@@ -132,6 +140,38 @@ SceneTable body() {
       })};
 }
 
+SceneTable rigid_body() {
+  return {
+      "[[particles.rigid_body]]",
+      "One rigid body. It has `semi_axes`, `inertia` or sites, and the keys of `[[particles.body]]`; or it is a top "
+      "that turns about a `fixed_point`.",
+      fields({
+          {"semi_axes", "vector", "length", "", "half the axes of a homogeneous ellipsoid"},
+          {"inertia", "vector", "mass length^2", "", "principal moments of inertia"},
+          {"sites", "text", "1", "", "CSV file of its sites, in place of `[[particles.rigid_body.site]]` tables"},
+          {"site", "tables", "1", "", "its sites: `[[particles.rigid_body.site]]`"},
+          {"linear", "flag", "1", "false", "true: the sites lie on one line, about which nothing turns"},
+          {"fixed_point", "vector", "length", "", "where a top is held; its inertia is about this point"},
+          {"center", "vector", "length", "", "the centre of mass of a top from its fixed point, in its own axes"},
+          {"orientation", "list", "1", "[1, 0, 0, 0]",
+           "quaternion w, x, y, z of the turn from its axes to those of space"},
+          {"axis", "vector", "1", "", "of the turn from the axes of space, in place of an orientation; with angle"},
+          {"angle", "number", "angle", "", "of this turn"},
+          {"spin", "vector", "mass length^2/time", "", "angular momentum about its centre, along the axes of space"},
+          {"angular_velocity", "vector", "1/time", "", "along its own axes, in place of the spin"},
+          {"spin_period", "number", "time", "", "turns once in this time about the axis of its largest moment"},
+      })};
+}
+
+SceneTable site() {
+  return {"[[particles.rigid_body.site]]", "One site of a rigid body: where forces between points act.",
+          fields({{"name", "text", "1", "", "in frames and messages"},
+                  {"place", "vector", "length", "", "from any point of the body, along any axes", "[0, 0, \"0.1 nm\"]"},
+                  {"mass", "number", "mass", "0", "0: a site that only takes forces"},
+                  {"charge", "number", "charge", "0", "its charge"},
+                  {"type", "text", "1", "", "its type, where there are [[particles.type]] tables"}})};
+}
+
 SceneTable type() {
   return {"[[particles.type]]", "What particles of one type have. It replaces what a structure says.",
           fields({{"name", "text", "1", "", "of the type, or its number", "\"O\""},
@@ -149,11 +189,11 @@ SceneTable pair() {
 }
 
 SceneTable hamiltonian() {
-  return {
-      "[hamiltonian]", "What moves the particles. The keys of the Hamiltonian itself are here too.",
-      fields({{"type", "text", "1", "", "a Hamiltonian", "\"kinetic_potential\""},
-              {"G", "number", "length^3/mass/time^2", "",
-               "the constant of gravitation, a bare number in the units of the scene; default: that of the units"}})};
+  return {"[hamiltonian]", "What moves the particles. The keys of the Hamiltonian itself are here too.",
+          and_of<RotatingOptions>(fields(
+              {{"type", "text", "1", "", "a Hamiltonian", "\"kinetic_potential\""},
+               {"G", "number", "length^3/mass/time^2", "",
+                "the constant of gravitation, a bare number in the units of the scene; default: that of the units"}}))};
 }
 
 SceneTable force() {
@@ -252,7 +292,8 @@ SceneTable named(std::string name, std::string help, std::vector<FieldInfo> keys
 }  // namespace
 
 std::vector<SceneTable> scene_tables(const Parts& parts) {
-  std::vector<SceneTable> all = {top(), particles(), body(), type(), pair(), hamiltonian(), force(), constraint()};
+  std::vector<SceneTable> all = {top(),  particles(), body(),        rigid_body(), site(),
+                                 type(), pair(),      hamiltonian(), force(),      constraint()};
   all.push_back(named("[hamiltonian.neighbors]", "How neighbors of pair forces are found; only `renewal` changes bits.",
                       and_of<NeighborOptions>({})));
   all.push_back(named("[hamiltonian.thermostat]", "Keeps the particles at a temperature, by friction and noise.",

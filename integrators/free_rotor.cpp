@@ -225,7 +225,7 @@ AxisOrder axis_order(const std::string& text) {
   std::sort(sorted.begin(), sorted.end());
   if (sorted != names) {
     throw Error("axes = \"" + text + "\" is not an order of three axes; \"xyz\", \"zyx\" or another one is expected",
-                {.key = "axes"});
+                {.key = "axes", .value = "\"" + text + "\""});
   }
   for (std::size_t k = 0; k < 3; ++k) order[k] = static_cast<int>(names.find(text[k]));
   return order;

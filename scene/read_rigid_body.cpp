@@ -113,9 +113,9 @@ RigidBody read_rigid_body(TableReader& body, const std::string& name, double mas
     const bool by_sites = body.has("sites") || body.has("site");
     const int ways = (by_sites ? 1 : 0) + (body.has("semi_axes") ? 1 : 0) + (body.has("inertia") ? 1 : 0);
     if (ways != 1) {
-      body.fail(nullptr, "inertia",
-                fmt::format("{} has {} of semi_axes, inertia and sites; one of them is expected", body.what(),
-                            ways == 0 ? "none" : "more than one"));
+      const std::string_view at = body.has("semi_axes") ? "semi_axes" : by_sites ? "sites" : "inertia";
+      body.fail(at, fmt::format("{} has {} of semi_axes, inertia and sites; one of them is expected", body.what(),
+                                ways == 0 ? "none" : "more than one"));
     }
     if (body.has("fixed_point")) return read_top(body, name, mass);
     if (body.has("center")) {

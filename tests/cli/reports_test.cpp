@@ -99,7 +99,7 @@ TEST_CASE("explain knows what is inside, what is used again, and when a run is s
                          "[[stop]]\ntype = \"escape\"\ndistance = 50\n[[stop]]\ntype = \"collision\"\ndistance = "
                          "0.5\nsteps = 7\n");
   const std::string inside = output(arcs, "explain scene.toml --all");
-  CHECK_FALSE(has(inside, "force gravity"));
+  CHECK_FALSE(has(inside, "force gravity\n"));
   CHECK_FALSE(has(inside, "order 2"));
   CHECK(has(inside, "\n  force oblateness\n"));
   CHECK(has(inside, "\n  stop escape, beyond 50, every 100 steps\n"));

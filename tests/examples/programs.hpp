@@ -80,9 +80,6 @@ inline std::optional<std::int64_t> shortened;
 }  // namespace examples
 
 #define main program
-namespace examples::asteroid_binary {
-#include "examples/asteroid_binary/main.cpp"
-}
 namespace examples::bead_on_wire_from_scene {
 #include "examples/bead_on_wire/from_scene.cpp"
 }
@@ -112,6 +109,9 @@ namespace examples::alkane_liquid {
 }
 namespace examples::argon_crystal {
 #include "examples/argon_crystal/main.cpp"
+}
+namespace examples::asteroid_binary {
+#include "examples/asteroid_binary/main.cpp"
 }
 namespace examples::bead_on_wire {
 #include "examples/bead_on_wire/main.cpp"

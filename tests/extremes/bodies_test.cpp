@@ -84,8 +84,8 @@ TEST_CASE("a needle and a disc in a field keep their energy", "[extremes][bodies
       REQUIRE(sim.run(std::lround(20 / h)).ok());
       return energy.worst();
     };
-    CHECK(error(0.05) < 1e-8);
-    CHECK(error(0.1) / error(0.05) > 20);
+    CHECK(error(0.1) < 1e-10);
+    CHECK(error(0.4) / error(0.2) > 200);
   }
 }
 

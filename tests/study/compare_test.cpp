@@ -510,16 +510,17 @@ TEST_CASE("errors below the rounding of doubles are measured, with their order",
 }
 
 }  // namespace
+
 TEST_CASE("orientations are compared with a truth of 113 bits, of one body too", "[study]") {
   const Scene top = read_scene(
       "units = 'reduced'\n[[particles.rigid_body]]\nname = 'top'\nmass = 1\ninertia = [2, 1.5, 1]\n"
       "fixed_point = [0, 0, 0]\ncenter = [0.2, 0.3, 0.5]\nspin = [0.6, -0.4, 0.9]\n"
       "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'uniform_field'\n"
-      "acceleration = [0, 0, -1]\n[integrator]\nmethod = 'verlet'\nstep = 0.1\nuntil = 4\n",
+      "acceleration = [0, 0, -1]\n[integrator]\nmethod = 'verlet'\nstep = 0.05\nuntil = 10\n",
       "top.toml");
   CompareOptions options;
   options.methods = {"verlet", "yoshida_4"};
-  options.steps = {0.1, 0.05};
+  options.steps = {0.05, 0.025};
   options.repeats = 1;
   const Comparison c = compare(top, options);
   REQUIRE(c.rows.size() == 4);
