@@ -126,7 +126,7 @@ Phase truth() {
 /// Slope of the errors over a ladder of 3, 4, 6, 8, ... steps, the finest three above what rounding leaves of the
 /// departures of planets, which are doubles.
 std::optional<double> measured_order(const KnownMethod& known) {
-  constexpr double floor = 1e-16, coarse = 1e-3;
+  constexpr double floor = 2e-16, coarse = 1e-3;
   const Phase right = truth();
   std::vector<std::pair<double, double>> rungs;
   for (std::int64_t n = 3; n <= 1024; n = n % 3 == 0 ? n / 3 * 4 : n / 2 * 3) {
