@@ -100,11 +100,11 @@ template <class Real> class ConstraintEquations {
   void fail(const ParticleSystem<Real>& s, Index equation, const std::string& what);
   void fail(const Failure& failure) { failure_ = failure; }
   void forget_failure() { failure_.reset(); }
-  /// Steps and sweeps of solvers so far.
+  /// What solvers have done so far.
   const ConstraintWork& work() const { return work_; }
   void count_iteration() { ++work_.iterations; }
   void count_iterations(std::int64_t more) { work_.iterations += more; }
-  /// Tells what so many iterations of a position stage have made of its largest violation; they are counted already.
+  /// Notes how far the iterations of a position stage reduced its largest violation; it does not count them.
   void measure(double before, double after, std::int64_t iterations);
   void restore(const ConstraintWork& work) { work_ = work; }
 

@@ -130,7 +130,7 @@ bool NewtonConstraints<Real>::has_lost(ConstraintEquations<Real>& equations, con
   using std::isfinite;
   for (Index e = 0; e < equations.size(); ++e) {
     if (isfinite(equations.values()[e])) continue;
-    equations.fail(s, e, "has a velocity across it that is not a number");
+    equations.fail(s, e, "has a relative velocity that is not a number");
     return true;
   }
   return false;

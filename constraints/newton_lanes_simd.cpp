@@ -90,8 +90,8 @@ MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& 
                           : solve_by_chords<8>(ListedBonds<8>(pack), pack, columns, task.h);
 }
 MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask&) {
-  return pack.lanes == 16 ? project_by_factors<16>(ListedBonds<16>(pack), pack, columns)
-                          : project_by_factors<8>(ListedBonds<8>(pack), pack, columns);
+  return pack.lanes == 16 ? project_by_factors<16>(ListedBonds<16>(pack), columns)
+                          : project_by_factors<8>(ListedBonds<8>(pack), columns);
 }
 
 }  // namespace

@@ -98,8 +98,7 @@ HWY_INLINE MoleculeReport solve_by_chords(Bonds bonds, const MoleculePack& pack,
 }
 
 /// The velocity stage.
-template <int P, class Bonds>
-HWY_INLINE MoleculeReport project_by_factors(Bonds bonds, const MoleculePack& pack, const MoleculeColumns& c) {
+template <int P, class Bonds> HWY_INLINE MoleculeReport project_by_factors(Bonds bonds, const MoleculeColumns& c) {
   bonds.find(c);
   const Flags<P> singular = bonds.factorize(), idle = bonds.idle();
   bonds.find_differences(c.v, c.edge, false);
@@ -109,10 +108,8 @@ HWY_INLINE MoleculeReport project_by_factors(Bonds bonds, const MoleculePack& pa
   const Flags<P> lost = but_not(either(singular, exceeds(carried, same<P>(std::numeric_limits<double>::max()))), idle);
   const Flags<P> solved = but_not(flags_of<P>((1U << P) - 1), either(lost, idle));
   bonds.template step<true>(solved);
-  for (int pass = 1; pass < pack.passes; ++pass) {  // each takes away what rounding has left of the one before
-    bonds.template sweep<true>(rates);
-    bonds.template step<false>(solved);
-  }
+  bonds.template sweep<true>(rates);  // what rounding has left of the first one
+  bonds.template step<false>(solved);
   bonds.put([&](int a) { return VelocityRow{c.v[a]}; });
   return {.open = bits_of(lost)};
 }

@@ -188,8 +188,8 @@ MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& 
                           : solve_by_chords<8>(PathBonds<8>(pack), pack, columns, task.h);
 }
 MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask&) {
-  return pack.lanes == 16 ? project_by_factors<16>(PathBonds<16>(pack), pack, columns)
-                          : project_by_factors<8>(PathBonds<8>(pack), pack, columns);
+  return pack.lanes == 16 ? project_by_factors<16>(PathBonds<16>(pack), columns)
+                          : project_by_factors<8>(PathBonds<8>(pack), columns);
 }
 
 }  // namespace

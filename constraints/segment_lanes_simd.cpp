@@ -281,7 +281,7 @@ MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& 
   return together(solve_by_chords<16>(SegmentBonds<16>(pack), pack, columns, task.h));
 }
 MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask&) {
-  return together(project_by_factors<16>(SegmentBonds<16>(pack), pack, columns));
+  return together(project_by_factors<16>(SegmentBonds<16>(pack), columns));
 }
 
 }  // namespace

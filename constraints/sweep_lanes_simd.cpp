@@ -43,13 +43,16 @@ template <int P, class Step>
 HWY_INLINE Flags<P> sweep_all(const MoleculePack& pack, const Slots<P>& s, double* moved, const MoleculeTask& task,
                               MoleculeReport& report, const Step& step) {
   const Flags<P> idle = idle_lanes<P>(pack);
-  Pack<P> worst;
+  Pack<P> worst, first = same<P>(0);
   while (true) {
     const Flags<P> open = sweep<P>(pack, s, moved, task.tolerance, step, worst);
     const bool ends = !any(open) || report.sweeps == task.iterations;
-    if (report.sweeps == 0) report.before = largest_but<P>(idle, worst);
-    if (ends) report.after = largest_but<P>(either(idle, open), worst);
-    if (ends) return open;
+    if (report.sweeps == 0) first = worst;
+    if (ends) {
+      const Flags<P> out = either(idle, open);
+      report.before = largest_but<P>(out, first), report.after = largest_but<P>(out, worst);
+      return open;
+    }
     ++report.sweeps;
   }
 }

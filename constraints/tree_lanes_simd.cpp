@@ -285,7 +285,7 @@ MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& 
   return solve_by_chords<8>(TreeBonds<8>(pack), pack, columns, task.h);
 }
 MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask&) {
-  return project_by_factors<8>(TreeBonds<8>(pack), pack, columns);
+  return project_by_factors<8>(TreeBonds<8>(pack), columns);
 }
 
 }  // namespace

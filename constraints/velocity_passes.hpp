@@ -1,13 +1,13 @@
 #pragma once
-/// How often Newton's method takes velocities off the constraints.
+/// How often Newton's method projects velocities onto the constraints.
 
 #include <algorithm>
 #include <cmath>
 
 namespace noether {
 
-/// Each time leaves a part of what it meets: what rounding makes of a factorisation, about 1e-15 times the largest
-/// ratio of masses. Twice is enough for those of molecules.
+/// Each pass leaves a fraction of the error that it meets, about 1e-15 times the largest ratio of masses: the rounding
+/// of a factorisation. Twice is enough for those of molecules.
 /// @param ratio  of the largest mass of a molecule to its smallest
 inline int velocity_passes(double ratio) {
   if (!(ratio > 1e6)) return 2;

@@ -242,7 +242,8 @@ TEST_CASE("a velocity that is no number is named at once, by every solver", "[la
         const auto atoms = static_cast<Index>(molecule.atoms.size());
         if (atoms > 100 && info.method != ConstraintMethod::newton) continue;
         if (info.method == ConstraintMethod::settle && molecule.name != "water") continue;
-        for (Index a = 0; a<atoms; a += atoms> 100 ? 37 : 1) {
+        const Index stride = atoms > 100 ? 37 : 1;
+        for (Index a = 0; a < atoms; a += stride) {
           Crowd crowd({.solver = info.method});
           for (int k = 0; k < (atoms > 100 ? 6 : 21); ++k) crowd.add(molecule, k);
           crowd.particles.velocities().set(5 * atoms + a, Vec3<double>(0, lost, 0));
