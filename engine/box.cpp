@@ -32,11 +32,24 @@ void Box::shift(int k, double d, double& x, std::int32_t& image) const {
   }
 }
 
+BoxAxis Box::axis(int k) const {
+  return {edges_[k], std::ldexp(1.5, 52) * spacing_[k], std::ldexp(1.0, 50) * spacing_[k]};
+}
+
+void Box::bring_in(int k, double* x, std::int32_t* image, Index count) const {
+  const BoxAxis of = axis(k);
+  const BoxKernels& kernels = box_kernels();
+  for (Index i = 0; (i = kernels.round(of, x, i, count)) < count; ++i) {
+    x[i] = on_grid(k, x[i]) + 0.0;  // -0 is 0, as in lanes
+    wrap(k, x[i], image[i]);
+  }
+}
+
 void Box::advance(int k, double h, const double* v, double* x, std::int32_t* image, Index count) const {
   // A sum that rounding could bring back into the cell is beyond the last point of the grid already.
-  const BoxAxis axis{edges_[k], std::ldexp(1.5, 52) * spacing_[k], std::ldexp(1.0, 50) * spacing_[k]};
+  const BoxAxis of = axis(k);
   const BoxKernels& kernels = box_kernels();
-  for (Index i = 0; (i = kernels.advance(axis, h, v, x, i, count)) < count; ++i) shift(k, h * v[i], x[i], image[i]);
+  for (Index i = 0; (i = kernels.advance(of, h, v, x, i, count)) < count; ++i) shift(k, h * v[i], x[i], image[i]);
 }
 
 }  // namespace noether

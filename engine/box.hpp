@@ -9,6 +9,8 @@
 
 namespace noether {
 
+struct BoxAxis;
+
 namespace detail {
 /// The whole number nearest to a number of any type, in that type: of a dual number without slope, of packs by lane.
 template <class Real> Real nearest_whole(const Real& x) {
@@ -85,6 +87,9 @@ class Box {
     image += static_cast<std::int32_t>(cells);
   }
 
+  /// Rounds `count` coordinates along axis `k` to the grid and brings each back into [0, edge) as by `wrap`.
+  void bring_in(int k, double* x, std::int32_t* image, Index count) const;
+
   /// x -> x + d for one coordinate in the cell; `d` is rounded to the grid, and so the sum is exact.
   void shift(int k, double d, double& x, std::int32_t& image) const;
 
@@ -95,6 +100,8 @@ class Box {
 
  private:
   static constexpr double most_cells = 1 << 30;
+
+  BoxAxis axis(int k) const;
 
   Vec3<double> edges_ = Vec3<double>::Zero(), spacing_ = Vec3<double>::Zero();
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// Drifts in a periodic box in lanes: the interface of `box_simd.cpp`, compiled once per SIMD level.
+/// Drifts and places in a periodic box in lanes: the interface of `box_simd.cpp`, compiled once per SIMD level.
 
 #include "numbers/kernels_simd.hpp"
 
@@ -19,6 +19,9 @@ struct BoxKernels {
   /// goes further than the longest step. Returns which one, or `count`.
   std::ptrdiff_t (*advance)(const BoxAxis& axis, double h, const double* v, double* x, std::ptrdiff_t from,
                             std::ptrdiff_t count);
+  /// Rounds coordinates to the grid from `from` on, until it meets one that is outside of [0, edge). Returns which one,
+  /// or `count`.
+  std::ptrdiff_t (*round)(const BoxAxis& axis, double* x, std::ptrdiff_t from, std::ptrdiff_t count);
 };
 
 NOETHER_KERNELS(BoxKernels, box_kernels)

@@ -132,6 +132,7 @@ template <class Real = double> class ParticleSystem {
   }
   /// How often each particle has crossed the periodic box, shape (n, 3); empty in open space.
   const VectorColumn<std::int32_t>& images() const { return images_; }
+  VectorColumn<std::int32_t>& images() { return images_; }
   /// Position of particle `i` as if it had never been wrapped [length].
   Vec3<Real> unwrapped(Index i) const {
     Vec3<Real> x = x_[i];
@@ -142,7 +143,14 @@ template <class Real = double> class ParticleSystem {
   /// Brings all positions back into the periodic box, doubles onto its grid, and counts the cells they have crossed.
   void wrap() {
     if (!box_.is_periodic()) return;
-    for (Index i = 0; i < size(); ++i) wrap(i);
+    for_blocks(size(), [&](Index begin, Index end) {
+      if constexpr (std::is_same_v<Real, double>) {
+        for (int k = 0; k < 3; ++k)
+          box_.bring_in(k, x_.component(k) + begin, images_.component(k) + begin, end - begin);
+      } else {
+        for (Index i = begin; i < end; ++i) wrap(i);
+      }
+    });
     version_ = detail::fresh_version();
   }
   /// Puts back the images of a file or a copy.

@@ -1,6 +1,7 @@
 #include "engine/sites.hpp"
 
 #include "engine/charge.hpp"
+#include "engine/sites_simd.hpp"
 #include "numbers/parallel.hpp"
 
 #include <fmt/format.h>
@@ -78,11 +79,28 @@ Topology topology_of_sites(const Topology* given, const Bodies& bodies, Index n,
   return t;
 }
 
+/// Each of `count` numbers so many times in a row.
+void repeat(const std::int32_t* from, Index count, Index times, std::int32_t* to) {
+  if (times == 3) {  // water
+    for (Index i = 0; i < count; ++i) to[3 * i] = to[3 * i + 1] = to[3 * i + 2] = from[i];
+    return;
+  }
+  for (Index i = 0; i < count; ++i) to = std::fill_n(to, times, from[i]);
+}
+
+std::vector<double> places_of(const BodyKind* kind) {
+  std::vector<double> places;
+  if (kind == nullptr) return places;
+  for (const BodySite& site : kind->sites) places.insert(places.end(), site.place.data(), site.place.data() + 3);
+  return places;
+}
+
 }  // namespace
 
 template <class Real> Sites<Real>::Sites(const ParticleSystem<Real>& s, bool pairs) : particles_(s.units()) {
   NOETHER_EXPECTS(s.bodies() != nullptr, "sites are those of rigid bodies");
-  const Bodies& bodies = *s.bodies();
+  bodies_ = s.shared_bodies();
+  const Bodies& bodies = *bodies_;
   const ScalarColumn<Real>* charges = s.template has<Charge>() ? &s.template column<Charge>() : nullptr;
   bool charged = charges != nullptr;
   for (const BodyKind& kind : bodies.kinds) {
@@ -92,25 +110,26 @@ template <class Real> Sites<Real>::Sites(const ParticleSystem<Real>& s, bool pai
   first_.push_back(0);
   for (Index i = 0; i < s.size(); ++i) {
     const BodyKind* kind = bodies.kind(i);
-    const auto add = [&](const std::string& name, const Real& mass, const Vec3<double>& place, const Real& charge) {
+    const auto add = [&](const std::string& name, const Real& mass, const Real& charge) {
       const Index a = particles_.add(name, mass, s.positions()[i], Vec3<Real>::Zero());
-      places_.append(Vec3<Real>(Real(place[0]), Real(place[1]), Real(place[2])));
       if (charged) particles_.template column<Charge>()[a] = charge;
     };
     if (kind == nullptr) {
-      add(s.name(i), s.masses()[i], Vec3<double>::Zero(), charges != nullptr ? (*charges)[i] : Real(0));
+      add(s.name(i), s.masses()[i], charges != nullptr ? (*charges)[i] : Real(0));
     } else {
       double mass = 0;
       for (const BodySite& site : kind->sites) mass += site.mass;
       if (std::fabs(static_cast<double>(s.masses()[i]) - mass) > 1e-12 * mass) {
-        throw Error(fmt::format("the mass of body '{}' is not that of its sites; give it other sites too", s.name(i)));
+        throw Error(fmt::format("the mass of body '{}' is not that of its sites; change its sites too", s.name(i)));
       }
       for (const BodySite& site : kind->sites) {
         const std::string name = fmt::format("{} of {}", site.name.empty() ? "site" : site.name, s.name(i));
-        add(name, Real(site.mass == 0 ? mass_of_none : site.mass), site.place, Real(site.charge));
+        add(name, Real(site.mass == 0 ? mass_of_none : site.mass), Real(site.charge));
       }
     }
     first_.push_back(particles_.size());
+    if (runs_.empty() || runs_.back().kind != kind) runs_.push_back({kind, i, i, places_of(kind)});
+    runs_.back().end = i + 1;
   }
   arms_ = VectorColumn<Real>(particles_.size());
   if (pairs) {
@@ -122,30 +141,50 @@ template <class Real> Sites<Real>::Sites(const ParticleSystem<Real>& s, bool pai
 }
 
 template <class Real> void Sites<Real>::follow(const ParticleSystem<Real>& s) {
-  const auto& orientation = s.template column<BodyOrientation>();
-  const auto& x = s.positions();
-  const auto& places = std::as_const(places_);
   VectorColumn<Real>& to = particles_.positions();
-  const bool periodic = s.box().is_periodic();
-  VectorColumn<std::int32_t> images(periodic ? particles_.size() : 0);  // of their bodies, before they are wrapped
   for_blocks(s.size(), [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) {
-      for (Index a = first(i); periodic && a < first(i + 1); ++a) images.set(a, s.images()[i]);
-      if (s.bodies()->kind(i) == nullptr) {
-        to.set(first(i), x[i]);
-        continue;
-      }
-      const Mat3<Real> r = rotation_matrix<Real>(orientation[i]);
-      for (Index a = first(i); a < first(i + 1); ++a) {
-        const Vec3<Real> arm = to_space<Real>(r, places[a]);
-        arms_.set(a, arm);
-        to.set(a, x[i] + arm);
+    const auto behind =
+        std::upper_bound(runs_.begin(), runs_.end(), begin, [](Index i, const Run& run) { return i < run.end; });
+    for (auto run = behind; run != runs_.end() && run->begin < end; ++run) {
+      const Index from = std::max(begin, run->begin), till = std::min(end, run->end);
+      place(*run, from, till, s, to);
+      for (int k = 0; s.box().is_periodic() && k < 3; ++k) {  // those of their bodies, before they are wrapped
+        repeat(s.images().component(k) + from, till - from, first(from + 1) - first(from),
+               particles_.images().component(k) + first(from));
       }
     }
   });
   particles_.clock() = s.clock();
-  particles_.restore_images(std::move(images));
   particles_.wrap();
+}
+
+template <class Real>
+void Sites<Real>::place(const Run& run, Index begin, Index end, const ParticleSystem<Real>& s, VectorColumn<Real>& to) {
+  const auto& x = s.positions();
+  if (run.kind == nullptr) {
+    for (Index i = begin; i < end; ++i) to.set(first(i), x[i]);
+    return;
+  }
+  const auto& orientation = s.template column<BodyOrientation>();
+  const auto sites = static_cast<Index>(run.kind->sites.size());
+  if constexpr (std::is_same_v<Real, double>) {
+    const SiteColumns columns{
+        {orientation.component(0), orientation.component(1), orientation.component(2), orientation.component(3)},
+        {x.component(0), x.component(1), x.component(2)},
+        {arms_.component(0), arms_.component(1), arms_.component(2)},
+        {to.component(0), to.component(1), to.component(2)}};
+    site_kernels().place(columns, run.places.data(), sites, begin, end, first(begin));
+  } else {
+    for (Index i = begin; i < end; ++i) {
+      const Mat3<Real> r = rotation_matrix<Real>(orientation[i]);
+      for (Index k = 0; k < sites; ++k) {
+        const double* place = run.places.data() + 3 * k;
+        const Vec3<Real> arm = to_space<Real>(r, Vec3<Real>(Real(place[0]), Real(place[1]), Real(place[2])));
+        arms_.set(first(i) + k, arm);
+        to.set(first(i) + k, x[i] + arm);
+      }
+    }
+  }
 }
 
 template <class Real>

@@ -4,6 +4,9 @@
 #include "engine/bodies.hpp"
 #include "engine/force_sink.hpp"
 
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace noether {
@@ -32,10 +35,39 @@ template <class Real> class Sites {
   Vec3<Real> arm(Index a) const { return arms_[a]; }
 
  private:
+  /// Consecutive particles of one kind.
+  struct Run {
+    const BodyKind* kind;  ///< null: points
+    Index begin, end;
+    std::vector<double> places;  ///< of the sites of a body, three numbers each
+  };
+
+  void place(const Run& run, Index begin, Index end, const ParticleSystem<Real>& s, VectorColumn<Real>& to);
+
   ParticleSystem<Real> particles_;
-  VectorColumn<Real> places_;  ///< of sites in their bodies [length]
-  VectorColumn<Real> arms_;    ///< the same in space
+  std::shared_ptr<const Bodies> bodies_;
+  VectorColumn<Real> arms_;  ///< of sites, from the centres of their bodies, in space [length]
   std::vector<Index> first_;
+  std::vector<Run> runs_;
+};
+
+/// The sites of the same particles from one evaluation of forces to the next.
+template <class Real> class KeptSites {
+ public:
+  /// Places the sites where the bodies are. @return whether they are new: the first ones, or those of other particles
+  bool follow(const ParticleSystem<Real>& s, bool pairs = true) {
+    const bool is_new = !sites_ || members_ != s.members();
+    if (is_new) sites_.emplace(s, pairs);
+    if (!is_new) sites_->follow(s);
+    members_ = s.members();
+    return is_new;
+  }
+  const Sites<Real>& operator*() const { return *sites_; }
+  const Sites<Real>* operator->() const { return &*sites_; }
+
+ private:
+  std::optional<Sites<Real>> sites_;
+  std::uint64_t members_ = 0;
 };
 
 extern template class Sites<double>;

@@ -1,5 +1,6 @@
 #include "integrators/free_rotor.hpp"
 
+#include "integrators/free_rotor_simd.hpp"
 #include "numbers/elliptic.hpp"
 #include "numbers/error.hpp"
 #include "numbers/small_angle.hpp"
@@ -148,7 +149,8 @@ Quaternion<Real> turn_asymmetric(const Quaternion<Real>& q, const Vec3<Real>& in
   Real rest = f.lambda * h, integral(0);  // of the third kind
   bool odd = false;
   Real halves(0);  // of the period of m: half turns about the third axis
-  if (f.m1 > Real(0)) {
+  const Real half_turn = atan2(Real(0), Real(-1));
+  if (f.m1 > Real(0) && fabs(rest) > half_turn / Real(2)) {  // a quarter period is no shorter
     const Real quarter = complete_elliptic(f.m1);
     if (fabs(rest) > quarter) {
       halves = floor(rest / (Real(2) * quarter) + Real(0.5));
@@ -163,7 +165,6 @@ Quaternion<Real> turn_asymmetric(const Quaternion<Real>& q, const Vec3<Real>& in
   const Real beside = Real(1) - f.n * end.sn * end.sn + f.n * f.start.sn * step.sn * end.cn * end.dn;
   const Real circled = atan2(f.ratio * (f.start.cn * end.sn - f.start.sn * end.cn),
                              f.start.cn * end.cn + f.ratio * f.ratio * f.start.sn * end.sn);
-  const Real half_turn = atan2(Real(0), Real(-1));
   const Real psi = length * h / I[2] + f.precession * integral -
                    f.sense * (atan2(f.root * sines, beside) + circled + half_turn * halves);
   const Real flip(odd ? -1 : 1);
@@ -218,6 +219,33 @@ Turned<Real> turn_by_axes(const Quaternion<Real>& q, const Vec3<Real>& spin, con
   return {renormalized(turn.q), action};
 }
 
+template <class Real>
+void turn_all_by_axes(RowColumn<Real, 4>& orientation, const VectorColumn<Real>& spin,
+                      const VectorColumn<Real>& inertia, const Real& h, const AxisOrder& order, Index begin, Index end,
+                      ScalarColumn<Real>& action) {
+  const auto turn = [&](Index from, Index to) {
+    for (Index i = from; i < to; ++i) {
+      action[i] = Real(0);
+      const Vec3<Real> moments = inertia[i];
+      if (turning_freedoms(moments) == 0) continue;
+      const Turned<Real> next = turn_by_axes<Real>(std::as_const(orientation)[i], spin[i], moments, h, order);
+      orientation.set(i, next.orientation);
+      action[i] = next.action;
+    }
+  };
+  if constexpr (std::is_same_v<Real, double>) {
+    const TurningColumns columns{
+        {orientation.component(0), orientation.component(1), orientation.component(2), orientation.component(3)},
+        {spin.component(0), spin.component(1), spin.component(2)},
+        {inertia.component(0), inertia.component(1), inertia.component(2)},
+        action.data()};
+    for (Index i = begin; (i = free_rotor_kernels().by_axes(columns, h, order.data(), i, end)) < end; i += 8)
+      turn(i, std::min(i + 8, end));
+  } else {
+    turn(begin, end);
+  }
+}
+
 AxisOrder axis_order(const std::string& text) {
   static constexpr std::string_view names = "xyz";
   AxisOrder order{};
@@ -238,5 +266,9 @@ template Turned<double> turn_by_axes(const Quaternion<double>&, const Vec3<doubl
                                      const AxisOrder&);
 template Turned<Quad> turn_by_axes(const Quaternion<Quad>&, const Vec3<Quad>&, const Vec3<Quad>&, const Quad&,
                                    const AxisOrder&);
+template void turn_all_by_axes(RowColumn<double, 4>&, const VectorColumn<double>&, const VectorColumn<double>&,
+                               const double&, const AxisOrder&, Index, Index, ScalarColumn<double>&);
+template void turn_all_by_axes(RowColumn<Quad, 4>&, const VectorColumn<Quad>&, const VectorColumn<Quad>&, const Quad&,
+                               const AxisOrder&, Index, Index, ScalarColumn<Quad>&);
 
 }  // namespace noether

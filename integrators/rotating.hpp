@@ -79,7 +79,7 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
     if (Wrapped<H>::claims().constraints > 0) {
       throw Error("constraints hold points, but some particles are rigid bodies; take one of the two out");
     }
-    turned_ = ScalarColumn<real>(s.size());
+    turned_ = ScalarColumn<real>((s.size() + 7) / 8 * 8);
   }
   void flow(char letter, ParticleSystem<real>& s, const real& h) {
     if (letter == 'A') turn(s, h);
@@ -114,13 +114,11 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
     const auto& spin = std::as_const(s).template column<BodySpin>();
     auto& orientation = s.template column<BodyOrientation>();
     for_blocks(s.size(), [&](Index begin, Index end) {
+      if (options_.rotor == Rotor::axes) {
+        return turn_all_by_axes<real>(orientation, spin, inertia, h, order_, begin, end, turned_);
+      }
       for (Index i = begin; i < end; ++i) {
-        const Vec3<real> moments = inertia[i];
-        turned_[i] = real(0);
-        if (turning_freedoms(moments) == 0) continue;
-        const Quaternion<real> q = std::as_const(orientation)[i];
-        const Turned<real> next = options_.rotor == Rotor::exact ? turn_exactly<real>(q, spin[i], moments, h)
-                                                                 : turn_by_axes<real>(q, spin[i], moments, h, order_);
+        const Turned<real> next = turn_exactly<real>(std::as_const(orientation)[i], spin[i], inertia[i], h);
         orientation.set(i, next.orientation);
         turned_[i] = next.action;
       }
@@ -129,7 +127,7 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
 
   RotatingOptions options_;
   AxisOrder order_;
-  ScalarColumn<real> turned_;  ///< action of the last turn of each body [energy time]
+  ScalarColumn<real> turned_;  ///< action of the last turn of each body [energy time], in whole eights
 };
 
 template <class H> Rotating(H) -> Rotating<H>;

@@ -5,8 +5,11 @@
 #include "engine/particle_system.hpp"
 #include "engine/saved_state.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/settings.hpp"
 
+#include <cmath>
 #include <random>
+#include <vector>
 
 namespace noether {
 namespace {
@@ -85,6 +88,32 @@ TEST_CASE("particles start inside the box, and their images tell where they came
       const double given = 3 * edges[k] * uniform(random);
       CHECK(std::abs(s.unwrapped(i)[k] - given) <= 2 * s.box().spacing(k));
       static_cast<void>(uniform(random));  // the velocity
+    }
+  }
+}
+
+TEST_CASE("coordinates are brought in together as each alone, to the bit", "[box][lanes]") {
+  std::mt19937_64 random(11);
+  for (const double edge : {10.0, 7.3, 1e-3, 4.0, std::nextafter(8.0, 0.0)}) {
+    const Box box = Box::periodic({edge, edge, edge});
+    std::uniform_real_distribution<double> inside(0, edge), around(-3 * edge, 3 * edge);
+    std::vector<double> given = {
+        0,     -0.0,         edge,    std::nextafter(edge, 0.0),        -0.4 * box.spacing(0), 0.5 * box.spacing(0),
+        1e300, std::nan(""), -1e-300, 0.5 * edge + 0.5 * box.spacing(0)};
+    for (int k = 0; k < 200; ++k) given.push_back(k % 31 == 5 ? around(random) : inside(random));
+    for (const SimdLevel level : test::all_levels()) {
+      const test::AtLevel at(level);
+      std::vector<double> x = given;
+      std::vector<std::int32_t> images(given.size(), 7);
+      box.bring_in(0, x.data(), images.data(), static_cast<Index>(x.size()));
+      for (std::size_t i = 0; i < given.size(); ++i) {
+        double alone = box.on_grid(0, given[i]);
+        std::int32_t image = 7;
+        box.wrap(0, alone, image);
+        INFO("edge " << edge << ", " << given[i]);
+        CHECK((x[i] == alone || (std::isnan(x[i]) && std::isnan(alone))));
+        CHECK((images[i] == image && !(x[i] == 0 && std::signbit(x[i]))));
+      }
     }
   }
 }
