@@ -128,6 +128,8 @@ constexpr std::array names_of_others = {
                 true},
     ForeignName{" j2 j4 zonal_harmonics gravitational_harmonics oblate quadrupole ", NamePlace::force, "oblateness"},
     ForeignName{" drag friction damping viscous modify_orbits_forces ", NamePlace::force, "linear_drag"},
+    ForeignName{" tide tidal tides_spin tides_constant_time_lag tctl tidal_force ", NamePlace::force, "tides",
+                "for rigid bodies, with the keys love_number, radius and tide_lag"},
     ForeignName{" efield electric_field constant_force addforce constant_field ", NamePlace::force, "uniform_field"},
     ForeignName{" buck born born_mayer exp6 exp_6 ", NamePlace::force, "buckingham"},
     ForeignName{" lj_repulsive weeks_chandler_andersen ", NamePlace::force, "wca"},

@@ -298,14 +298,13 @@ class SceneReader {
     check_force_beside(reader, *kind, force, scene_.hamiltonian, parts_);
     set_kick(reader, force);
     if (scene_.hamiltonian.rotating) check_force_on_bodies(reader, *kind, force);
-    if (!force.letter) {
-      try {
-        scene_.hamiltonian.on_bodies(force.force).check(scene_.particles);
-      } catch (const Error& error) {
-        const SceneValue* file = root_.find("particles")->find("structure");
-        const bool of_file = error.key() == "structure" && file != nullptr;
-        reader.fail("type", error.message() + (of_file ? " " + to_text(*file) : ""));
-      }
+    try {
+      (force.letter ? force.force : scene_.hamiltonian.on_bodies(force.force)).check(scene_.particles);
+    } catch (const Error& error) {
+      const SceneValue* file = root_.find("particles")->find("structure");
+      const bool of_file = error.key() == "structure" && file != nullptr;
+      const std::string key = reader.has(error.key()) ? std::string(error.key()) : "type";
+      reader.fail(key, error.message() + (of_file ? " " + to_text(*file) : ""));
     }
     list.push_back(effective);
     scene_.hamiltonian.forces.push_back(std::move(force));

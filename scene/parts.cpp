@@ -30,6 +30,7 @@
 #include "integrators/systems/prothero_robinson.hpp"
 #include "integrators/systems/rc_ladder.hpp"
 #include "integrators/systems/robertson.hpp"
+#include "integrators/tidal.hpp"
 #include "integrators/velocity_rescaling.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/checkpoint.hpp"
@@ -144,6 +145,7 @@ Parts standard_parts() {
   parts.add_force<Tether>();
   parts.add_force<Bonded>();
   parts.add_force<LinearDrag>();
+  parts.add_force<Tides>();
   parts.add_constraint<Distance>();
   parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read, Drawn::chain});
   parts.add_constraint<Angle>();

@@ -215,6 +215,8 @@ FORCES = {
     "harmonic_bond": Case(PAIR, forces("type = 'harmonic_bond'; chain = ['a', 'b']; k = 10; length = 0.7")),
     "tether": Case(PAIR, forces("type = 'tether'; bodies = 'all'; k = 10; length = 0.2; point = [0.0, 0.0, 0.3]")),
     "bonded": Case(CHAIN, forces("type = 'bonded'"), step=0.01, files={"chain.data": CHAIN_FILE}),
+    "tides": Case(ROCKS.replace("angular_velocity = [0.3", "love_number = 0.4\nradius = 0.2\ntide_lag = 0.01\nangular_velocity = [0.3"),
+                  forces(PULL, "type = 'tides'; G = 1"), rivals=FORWARD),
     "linear_drag": Case(PAIR, forces(SPRING, "type = 'linear_drag'; rate = 0.1"), rivals=FORWARD),
 }
 
