@@ -1,6 +1,7 @@
 #include "io/compare_runs.hpp"
 
 #include "io/inspect.hpp"
+#include "io/trajectory_groups.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
 #include "io/trajectory_topology.hpp"
@@ -215,7 +216,7 @@ template <class Map> std::vector<std::string> names_in(const Map& map) {
 /// Left out is in which order the particles stood in memory. @param types  false: without what tells types and bonds
 std::map<std::string, std::vector<std::string>> constants_in(const Hdf5File& file, bool types) {
   std::map<std::string, std::vector<std::string>> all;
-  for (const std::string& group : {particles_path, system_path, connectivity_path, topology_path}) {
+  for (const std::string& group : constant_groups()) {
     for (const std::string& name : file.children(group)) {
       if (file.is_group(group + "/" + name) || group + "/" + name == topology_path + "/order") continue;
       const bool of_types = group != system_path && (group != particles_path || name == "species" || name == "charge");

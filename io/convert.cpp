@@ -1,5 +1,7 @@
 // Trajectories as text, extended XYZ and CSV, and frames as bodies of new scenes.
+#include "engine/bodies.hpp"
 #include "io/frame_particles.hpp"
+#include "io/frame_sites.hpp"
 #include "io/inspect.hpp"
 #include "io/sandbox.hpp"
 #include "io/structure_parts.hpp"
@@ -15,12 +17,13 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <optional>
 
 namespace noether::io {
 
 namespace {
 
-using Write = void (*)(const TrajectoryReader&, const Frame&, fmt::memory_buffer&);
+using Write = void (*)(const Frames& shared, const Frame&, fmt::memory_buffer&);
 
 /// A name as one word of a column.
 std::string word_of(const std::string& name) {
@@ -75,8 +78,7 @@ void write_columns(const Frames& shared, const Frame& frame, std::size_t i, char
 }
 
 /// A molecular run, in the units that `read_structure` expects of such a file: those of ASE.
-void write_molecular_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
-  const Frames& shared = reader.shared();
+void write_molecular_xyz(const Frames& shared, const Frame& frame, fmt::memory_buffer& out) {
   const FileUnits ase = file_units_of(StructureFormat::extended_xyz, {});
   const auto into = std::back_inserter(out);
   const bool charged = !shared.charges.empty();
@@ -96,8 +98,7 @@ void write_molecular_xyz(const TrajectoryReader& reader, const Frame& frame, fmt
 }
 
 /// Runs in other units keep them, and the comment says which they are.
-void write_own_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
-  const Frames& shared = reader.shared();
+void write_own_xyz(const Frames& shared, const Frame& frame, fmt::memory_buffer& out) {
   const auto into = std::back_inserter(out);
   fmt::format_to(into, "{}\nProperties=species:S:1:pos:R:3:vel:R:3{} Time={:.17g} Step={} {} units={}",
                  shared.ids.size(), properties_of(shared), frame.time, frame.step, cell_of(frame, 1), shared.units);
@@ -117,12 +118,11 @@ void write_own_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memo
 }
 
 /// Extended XYZ, the format of ASE and OVITO: a count, one line of keys, one line per particle.
-void write_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
-  (reader.shared().units == "molecular" ? write_molecular_xyz : write_own_xyz)(reader, frame, out);
+void write_xyz(const Frames& shared, const Frame& frame, fmt::memory_buffer& out) {
+  (shared.units == "molecular" ? write_molecular_xyz : write_own_xyz)(shared, frame, out);
 }
 
-void write_csv(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
-  const Frames& shared = reader.shared();
+void write_csv(const Frames& shared, const Frame& frame, fmt::memory_buffer& out) {
   for (std::size_t i = 0; i < shared.ids.size(); ++i) {
     const double *x = &frame.positions[3 * i], *v = &frame.velocities[3 * i];
     fmt::format_to(std::back_inserter(out), "{},{:.17g},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}",
@@ -134,7 +134,7 @@ void write_csv(const TrajectoryReader& reader, const Frame& frame, fmt::memory_b
 }
 
 /// A row for each frame, a column for each variable.
-void write_system(const TrajectoryReader& /*reader*/, const Frame& frame, fmt::memory_buffer& out) {
+void write_system(const Frames& /*shared*/, const Frame& frame, fmt::memory_buffer& out) {
   fmt::format_to(std::back_inserter(out), "{},{:.17g}", frame.step, frame.time);
   for (const double y : frame.variables) fmt::format_to(std::back_inserter(out), ",{:.17g}", y);
   out.push_back('\n');
@@ -215,6 +215,13 @@ void convert_to_bodies(const std::filesystem::path& file, const std::filesystem:
   }
   if (options.unwrapped) throw Error("--bodies keeps the particles in their box; leave out --unwrapped");
   const FrameParticles start = read_frame_particles(file, {.frame = options.frame});
+  const auto& left_out = start.left_out;
+  if (std::find(left_out.begin(), left_out.end(), BodyOrientation::name) != left_out.end()) {
+    throw Error(fmt::format("'{}' has rigid bodies, and does not say what they are made of; continue the run by "
+                            "--resume, or start from its scene",
+                            file.string()),
+                {.value = file.string()});
+  }
   const std::string beyond = table ? beyond_a_table(start.particles) : "";
   if (!beyond.empty()) {
     throw Error(fmt::format("cannot write bodies to '{}': a table cannot store {}; give a name that ends in .h5",
@@ -269,12 +276,14 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
         "cannot unwrap the positions of '{}': its frames have no periodic box; leave out --unwrapped", file.string()));
   }
   const Write write = of_system ? write_system : extension == ".csv" ? write_csv : write_xyz;
+  std::optional<FrameSites> sites;  // pictures show atoms; tables keep orientations and spins
+  if (extension == ".xyz" && FrameSites::are_in(reader)) sites.emplace(reader, file);
   write_text_file(out, [&](std::ofstream& target) {
     if (extension == ".csv") target << csv_head(reader.shared());
     for (Index k = 0; k < reader.frames() && target; ++k) {
       fmt::memory_buffer text;
-      const Frame frame = reader.frame(k);
-      write(reader, options.unwrapped ? unwrapped(frame) : frame, text);
+      const Frame frame = sites ? sites->frame(reader.frame(k)) : reader.frame(k);
+      write(sites ? sites->shared() : reader.shared(), options.unwrapped ? unwrapped(frame) : frame, text);
       target.write(text.data(), static_cast<std::streamsize>(text.size()));
     }
   });

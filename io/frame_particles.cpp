@@ -1,8 +1,10 @@
 #include "io/frame_particles.hpp"
 
+#include "engine/bodies.hpp"
 #include "engine/charge.hpp"
 #include "io/files.hpp"
 #include "io/sandbox.hpp"
+#include "io/trajectory_bodies.hpp"
 #include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
@@ -35,6 +37,7 @@ struct StoredFrame {
   Frames shared;
   std::vector<Index> order;  ///< the row of each particle
   std::shared_ptr<const Topology> topology;
+  std::shared_ptr<const Bodies> bodies;
   std::map<std::string, StoredColumn> columns;
   std::string sha256, scene_toml;
   bool knows_types = true;
@@ -118,6 +121,7 @@ StoredFrame stored_frame(const std::filesystem::path& path, std::int64_t wanted)
   stored.frame = reader.frame(stored.number);
   stored.shared = reader.shared();
   stored.order = read_order(reader.file(), static_cast<Index>(stored.shared.ids.size()));
+  stored.bodies = read_rigid_bodies(reader.file(), stored.order);
   stored.topology = read_topology(reader.file(), stored.shared.ids, stored.order);
   // Species without names of types were numbers of names.
   stored.knows_types = stored.topology != nullptr || !reader.file().has(particles_path + "/species");
@@ -137,11 +141,20 @@ template <class Number> Vec3<Number> row_of(const std::vector<Number>& numbers, 
   return {numbers.at(at), numbers.at(at + 1), numbers.at(at + 2)};
 }
 
-/// Whether the new run has room for a column: the charge always, others where it declares them.
-bool has_room_for(const ColumnInfo& info, const FrameOptions& options) {
+/// The columns that rigid bodies have.
+const std::vector<ColumnInfo>& columns_of_bodies() {
+  static const std::vector<ColumnInfo> all = ColumnList<BodyInertia, BodyOrientation, BodySpin>::infos();
+  return all;
+}
+
+/// Whether the new run has room for a column: the charge always, those of rigid bodies where it is known what they are
+/// made of, others where it declares them.
+bool has_room_for(const ColumnInfo& info, const FrameOptions& options, bool bodies) {
+  const auto is_it = [&](const ColumnInfo& one) { return one.name == info.name && one.width == info.width; };
+  const std::vector<ColumnInfo>& of_bodies = columns_of_bodies();
+  if (std::any_of(of_bodies.begin(), of_bodies.end(), is_it)) return bodies;
   if (!options.columns || info.name == Charge::name) return true;
-  return std::any_of(options.columns->begin(), options.columns->end(),
-                     [&](const ColumnInfo& one) { return one.name == info.name && one.width == info.width; });
+  return std::any_of(options.columns->begin(), options.columns->end(), is_it);
 }
 
 /// The declaration that the new run has, or else that of the file.
@@ -151,13 +164,16 @@ ColumnInfo declared(const ColumnInfo& info, const FrameOptions& options) {
       if (one.name == info.name) return one;
     }
   }
+  for (const ColumnInfo& one : columns_of_bodies()) {
+    if (one.name == info.name) return one;
+  }
   return info.name == Charge::name ? column_info<Charge>() : info;
 }
 
 void give_columns(const StoredFrame& stored, const FrameOptions& options, FrameParticles& result) {
   ParticleSystem<double>& s = result.particles;
   for (const auto& [name, column] : stored.columns) {
-    if (!has_room_for(column.info, options)) {
+    if (!has_room_for(column.info, options, stored.bodies != nullptr)) {
       result.left_out.push_back(name);
       continue;
     }
@@ -203,6 +219,7 @@ void fill(const StoredFrame& stored, const FrameOptions& options, const std::fil
     s.restore_images(std::move(images));
   }
   s.set_topology(stored.topology);
+  if (stored.bodies != nullptr) s.set_bodies(stored.bodies);
 }
 
 }  // namespace

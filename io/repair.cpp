@@ -6,6 +6,7 @@
 #include "io/ordered_file.hpp"
 #include "io/sandbox.hpp"
 #include "io/trajectory_digest.hpp"
+#include "io/trajectory_groups.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
 #include "io/trajectory_topology.hpp"
@@ -45,7 +46,7 @@ Plan plan(const fs::path& path, std::uint64_t size) {
   const TrajectoryReader reader(path);
   const Hdf5File& file = reader.file();
   std::vector<std::string> complete;
-  for (const std::string& group : {particles_path, system_path, connectivity_path, topology_path}) {
+  for (const std::string& group : constant_groups()) {
     for (const std::string& one : file.children(group)) {
       const std::string path_of_one = group + "/" + one;
       if (!file.is_group(path_of_one) && !file.open(path_of_one).grows()) complete.push_back(path_of_one);

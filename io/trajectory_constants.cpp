@@ -1,5 +1,6 @@
 #include "io/trajectory_constants.hpp"
 
+#include "io/trajectory_bodies.hpp"
 #include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_topology.hpp"
@@ -124,6 +125,7 @@ void write_constants(const Hdf5File& file, const ParticleSystem<double>& state, 
     if (!column.info.moves()) write_parameter(file, column, order, state.units());
   }
   write_topology(file, state, order);
+  write_rigid_bodies(file, state, order);
 }
 
 }  // namespace noether::io

@@ -13,8 +13,9 @@ namespace noether::io {
 /// Writes what the file is: /h5md, the attributes of /noether, and the effective scene.
 void write_header(const Hdf5File& file, const UnitSystem& units, const std::string& scene_toml);
 
-/// Writes what particles have once: ids, masses, names, the boundary of the box, columns that do not move, and types,
-/// molecules and bonded terms where there are any (io/trajectory_topology.hpp).
+/// Writes what particles have once: ids, masses, names, the boundary of the box, columns that do not move, types,
+/// molecules and bonded terms (io/trajectory_topology.hpp), and what bodies are made of (io/trajectory_bodies.hpp),
+/// where there are any.
 /// @param order  indices of the particles in the order of their ids
 void write_constants(const Hdf5File& file, const ParticleSystem<double>& state, const std::vector<Index>& order);
 

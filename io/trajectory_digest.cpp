@@ -1,5 +1,6 @@
 #include "io/trajectory_digest.hpp"
 
+#include "io/trajectory_groups.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_topology.hpp"
 #include "numbers/error.hpp"
@@ -62,7 +63,7 @@ RowDigest sample_digest(std::int64_t step, double time,
 std::string constants_digest(const Hdf5File& file) {
   RunningDigest hash;
   hash.add(std::string_view("noether-constants-1\n"));
-  for (const std::string& group : {particles_path, system_path, connectivity_path, topology_path}) {
+  for (const std::string& group : constant_groups()) {
     for (const std::string& name : file.children(group)) {
       const std::string path = group + "/" + name;
       if (file.is_group(path)) continue;

@@ -1,0 +1,131 @@
+// Rigid bodies in run.h5: what they are made of, to the bit, their atoms as XYZ, and runs that begin from a frame.
+
+#include "tests/support/rigid_bodies.hpp"
+#include "engine/charge.hpp"
+#include "engine/sites.hpp"
+#include "io/digest.hpp"
+#include "io/frame_particles.hpp"
+#include "io/hdf5_file.hpp"
+#include "io/inspect.hpp"
+#include "io/structure.hpp"
+#include "scene/scene.hpp"
+#include "tests/io/support.hpp"
+#include "tests/support/files.hpp"
+
+#include <memory>
+
+#if NOETHER_HDF5
+
+namespace noether::test {
+namespace {
+
+/// Two molecules of water, a dumbbell and an ion in a box, their ids in no order; one molecule across a face.
+ParticleSystem<double> mixture() {
+  ParticleSystem<double> s(unit_system("molecular"));
+  const std::vector<BodySite> water = {
+      {.place = {0, -0.0065, 0}, .mass = 15.9994, .charge = -0.8476, .type = 0, .name = "OW"},
+      {.place = {0.0816, 0.0513, 0}, .mass = 1.00794, .charge = 0.4238, .type = 1, .name = "HW"},
+      {.place = {-0.0816, 0.0513, 0}, .mass = 1.00794, .charge = 0.4238, .type = 1, .name = "HW"}};
+  Bodies bodies;
+  const RigidBody one = body_of_sites("water", water);
+  add_body(s, bodies, one, {.x = {0.02, 1, 1}, .v = {1, 0, 0.5}, .angular_velocity = Vec3<double>(4, -6, 3)});
+  s.add("ion", 22.99, {0.7, 0.6, 0.5}, {0, 0, -1});
+  add_body(s, bodies, one,
+           {.x = {0.9, 1.1, 0.3}, .orientation = {0.5, 0.5, -0.5, 0.5}, .spin = Vec3<double>(0.01, 0.02, 0)});
+  add_body(s, bodies,
+           body_of_sites("N2",
+                         {{.place = {0, 0, 0.055}, .mass = 14, .type = 2, .name = "N"},
+                          {.place = {0, 0, -0.055}, .mass = 14, .type = 2, .name = "N"}},
+                         true),
+           {.x = {0.5, 0.4, 1.3}, .angular_velocity = Vec3<double>(9, 0, 0)});
+  s.set_bodies(std::make_shared<const Bodies>(std::move(bodies)));
+  auto& charges = s.add_column<Charge>();
+  charges[1] = 1;
+  Topology topology;
+  topology.type_names = {"OW", "HW", "N", "Na"};
+  topology.types = {0, 3, 0, 2};
+  s.set_topology(std::make_shared<const Topology>(topology));
+  s.restore_ids({40, 7, 12, 3});
+  s.set_box(Box::periodic({1.5, 2, 2.5}));
+  return s;
+}
+
+TEST_CASE("what bodies are made of comes back from run.h5 to the bit", "[io][rigid_bodies]") {
+  const ScratchFolder folder;
+  const ParticleSystem<double> s = mixture();
+  io::write_one_frame(folder / "run.h5", s, 3, 0.25);
+  const io::FrameParticles found = io::read_frame_particles(folder / "run.h5");
+  REQUIRE(found.particles.bodies() != nullptr);
+  CHECK(*found.particles.bodies() == *s.bodies());
+  CHECK(io::digest(found.particles) == io::digest(s));
+  CHECK(found.left_out.empty());
+  // Parts of a new scene need not declare the columns of bodies.
+  const io::FrameParticles again = io::read_frame_particles(folder / "run.h5", {.columns = std::vector<ColumnInfo>{}});
+  CHECK((again.left_out.empty() && again.particles.has<BodySpin>()));
+}
+
+TEST_CASE("XYZ shows the atoms of bodies where they are, with the velocities of their places", "[io][rigid_bodies]") {
+  const ScratchFolder folder;
+  const ParticleSystem<double> s = mixture();
+  io::write_one_frame(folder / "run.h5", s, 3, 0.25);
+  CHECK(io::convert(folder / "run.h5", folder / "run.xyz") == 1);
+  const ParticleSystem<double> atoms = io::read_structure(folder / "run.xyz");
+  const Sites<double> sites(s);
+  REQUIRE(atoms.size() == 9);
+  CHECK(atoms.topology()->type_names == std::vector<std::string>{"OW", "HW", "Na", "N"});
+  double momentum = 0, kinetic = 0;
+  for (Index a = 0; a < 9; ++a) {
+    const Vec3<double> apart = s.box().minimum_image<double>(Vec3<double>(std::as_const(atoms).positions()[a]) -
+                                                             Vec3<double>(sites.particles().positions()[a]));
+    CHECK(apart.norm() < 1e-14);
+    CHECK(std::abs(atoms.column<Charge>()[a] - sites.particles().column<Charge>()[a]) < 1e-15);
+    const Vec3<double> v = std::as_const(atoms).velocities()[a];
+    momentum += atoms.masses()[a] * v[0];
+    kinetic += atoms.masses()[a] * v.squaredNorm() / 2;
+  }
+  CHECK(std::abs(momentum - 18.01528) < 1e-12);
+  CHECK(std::abs(kinetic / (kinetic_energy(s) + turning_energy_of(s)) - 1) < 1e-13);
+  // A table keeps orientations and spins, a row a body.
+  io::convert(folder / "run.h5", folder / "run.csv");
+  CHECK(read_text(folder / "run.csv").find("orientation[3]") != std::string::npos);
+}
+
+TEST_CASE("bodies of which nothing more can be shown stay rows of their own", "[io][rigid_bodies]") {
+  const ScratchFolder folder;
+  ParticleSystem<double> s(unit_system("reduced"));
+  add_body(s, ellipsoid("rock", 1, {3, 2, 1}), {.orientation = {0.5, 0.5, 0.5, 0.5}});
+  io::write_one_frame(folder / "run.h5", s, 0, 0);
+  io::convert(folder / "run.h5", folder / "run.xyz");
+  CHECK(read_text(folder / "run.xyz").find(":orientation:R:4:spin:R:3") != std::string::npos);
+}
+
+TEST_CASE("a run of rigid bodies begins from a frame", "[io][rigid_bodies]") {
+  const ScratchFolder folder;
+  const auto text = [](const std::string& particles) {
+    return "units = 'reduced'\n[particles]\n" + particles +
+           "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'gravity_of_bodies'\n"
+           "degree = 'sites'\n[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 20\n"
+           "[[every]]\ntype = 'trajectory'\nsteps = 10\n";
+  };
+  const std::string rock =
+      "[[particles.rigid_body]]\nname = 'rock'\nx = [1, 0, 0]\nv = [0, 0.7, 0]\nangular_velocity = [0.1, 0.2, 1]\n"
+      "site = [{place = [0.1, 0, 0], mass = 0.1}, {place = [0, 0.2, 0], mass = 0.1}, {place = [0, 0, 0.3], mass = "
+      "0.1}]\n[[particles.body]]\nname = 'star'\nmass = 1\nx = [0, 0, 0]\nv = [0, 0, 0]\n";
+  const auto end_of = [&](const std::string& particles, const char* name, std::int64_t steps) {
+    const Scene scene = read_scene(text(particles), folder / "scene.toml");
+    Simulation<double> sim = assemble(scene, {.trajectory = folder / name, .checkpoint = {}});
+    REQUIRE(sim.run(steps).ok());
+    return sim.particles();
+  };
+  const ParticleSystem<double> whole = end_of(rock, "whole.h5", 20);
+  end_of(rock, "half.h5", 10);
+  const ParticleSystem<double> rest = end_of("bodies = 'half.h5'\n", "rest.h5", 10);
+  CHECK((whole.positions()[0] - rest.positions()[0]).norm() < 1e-14);
+  CHECK((whole.column<BodyOrientation>()[0] - rest.column<BodyOrientation>()[0]).norm() < 1e-14);
+  CHECK((whole.column<BodySpin>()[0] - rest.column<BodySpin>()[0]).norm() < 1e-15);
+}
+
+}  // namespace
+}  // namespace noether::test
+
+#endif
