@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 
+#include "engine/bodies.hpp"
 #include "numbers/error.hpp"
 #include "numbers/parallel.hpp"
 #include "numbers/quantity.hpp"
@@ -95,7 +96,8 @@ void print_text(const Scene& scene, const Evaluation& e) {
   fmt::print("{:<22}{}\n", "largest force", with_unit(e.force_max, dimensions::force));
   if (!e.gradient_error) return;
   const Index particles = scene.particles.size(), asked = e.gradient_asked;
-  fmt::print("{:<22}{:.2g} of the largest force{}\n", "force against -grad U", *e.gradient_error,
+  fmt::print("{:<22}{:.2g} of the largest force{}{}\n", "force against -grad U", *e.gradient_error,
+             has_bodies(scene.particles) ? ", or of a torque of the largest one" : "",
              asked < particles ? fmt::format(", checked at {} of {}", asked, counted(particles, "particle")) : "");
 }
 

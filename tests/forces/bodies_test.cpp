@@ -1,6 +1,7 @@
 /// Forces on rigid bodies: on their sites, by their moments, against mass points and references.
 
 #include "engine/charge.hpp"
+#include "forces/check_gradient.hpp"
 #include "forces/gravity.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/pair_potentials.hpp"
@@ -68,7 +69,33 @@ ParticleSystem<double> two_bodies(double scale = 1, double distance = 1) {
   return s;
 }
 
+/// A dipole along the third axis of each body in a field along z: U = - k b_z.
+struct Dipoles {
+  double k = 1;
+  double sense = 1;  ///< -1: a torque that is not its slope
+
+  static ForceClaims claims() { return {.on_bodies = true}; }
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    for (Index i = 0; i < s.size(); ++i) {
+      const Mat3<Real> r = rotation_matrix<Real>(s.template column<BodyOrientation>()[i]);
+      const Vec3<Real> along(r(0, 2), r(1, 2), r(2, 2)), up(Real(0), Real(0), Real(k));
+      out.torque(i, Real(sense) * cross<Real>(along, up));
+      out.energy(-dot(along, up));
+    }
+  }
+};
+
 }  // namespace
+
+TEST_CASE("torques are asked against the slopes of the energy as bodies turn", "[forces][bodies]") {
+  const ParticleSystem<double> s = two_bodies(), sites = two_octahedra();
+  CHECK_NOTHROW(check_gradient(GravityOfBodies{}, s));
+  CHECK_NOTHROW(check_gradient(GravityOfBodies{.degree = Figure::sites}, sites));
+  CHECK_NOTHROW(check_gradient(OnSites<double>(ForceField<double>().add(HarmonicField{.k = 2})), sites));
+  CHECK_NOTHROW(check_gradient(Dipoles{}, s));
+  CHECK_THROWS_WITH(check_gradient(Dipoles{.sense = -1}, s), Catch::Contains("torques of the force are not minus"));
+  CHECK(std::abs(gradient_error(AnyForce<double>(Dipoles{.sense = 0.5}), s) - 1) < 1e-9);
+}
 
 TEST_CASE("gravity of second degree has its energy, force and torques", "[forces][bodies]") {
   const BodyForces e = body_forces(GravityOfBodies{}, two_bodies());
@@ -306,7 +333,7 @@ TEST_CASE("what cannot act on the sites of bodies is refused", "[forces][bodies]
           ParticleSystem<double> s = two_octahedra();
           s.masses()[0] = 2;
           Sites<double> sites(s);
-        }) == "the mass of body 'a' is not that of its sites; give it other sites too");
+        }) == "the mass of body 'a' is not that of its sites; change its sites too");
 }
 
 }  // namespace noether
