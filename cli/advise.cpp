@@ -4,6 +4,7 @@
 #include "numbers/error.hpp"
 #include "numbers/progress.hpp"
 #include "numbers/suggest.hpp"
+#include "scene/minimize.hpp"
 #include "scene/reader.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
@@ -39,7 +40,8 @@ void advise_scene(const AdviseArguments& given, const Parts& parts) {
   options.row_budget = given.budget;
   std::vector<std::string> sets = given.sets;
   if (given.until) sets.push_back(std::string(until_option) + *given.until);
-  const Scene scene = load_scene(given.scene, parts, sets);
+  Scene scene = load_scene(given.scene, parts, sets);
+  begin_at_minimum(scene);
   tell_notes_and_warnings(scene);
   TerminalLine line(!given.json);
   options.progress = line.teller();

@@ -4,6 +4,7 @@
 #include "cli/shell_text.hpp"
 #include "numbers/error.hpp"
 #include "numbers/progress.hpp"
+#include "scene/minimize.hpp"
 #include "scene/output_folder.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
@@ -53,7 +54,8 @@ std::filesystem::path folder_of(const CompareArguments& given) {
 }
 
 void compare_scene(const CompareArguments& given, const Parts& parts) {
-  const Scene scene = load_scene(given.scene, parts, given.sets);
+  Scene scene = load_scene(given.scene, parts, given.sets);
+  begin_at_minimum(scene);
   if (!given.quiet) tell_notes_and_warnings(scene);
   CompareOptions options;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");

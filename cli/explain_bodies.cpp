@@ -1,10 +1,10 @@
 #include "cli/explain_bodies.hpp"
 
 #include "engine/bodies.hpp"
+#include "study/turning_steps.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -20,9 +20,7 @@ struct BodyCount {
 
 BodyCount counted_bodies(const Scene& scene) {
   const ParticleSystem<double>& s = scene.particles;
-  const auto& inertia = s.column<BodyInertia>();
   BodyCount count;
-  double fastest = 0;
   for (Index i = 0; i < s.size(); ++i) {
     const BodyKind* kind = s.bodies()->kind(i);
     if (kind == nullptr) continue;
@@ -31,14 +29,8 @@ BodyCount counted_bodies(const Scene& scene) {
     count.held += kind->held ? 1 : 0;
     count.sites += sites;
     count.excluded += sites * (sites - 1) / 2;
-    const Vec3<double> in_body = spin_in_body<double>(s.column<BodyOrientation>()[i], s.column<BodySpin>()[i]);
-    double rate2 = 0;
-    for (int k = 0; k < 3; ++k) {
-      if (inertia[i][k] > 0) rate2 += in_body[k] * in_body[k] / (inertia[i][k] * inertia[i][k]);
-    }
-    fastest = std::max(fastest, std::sqrt(rate2));
   }
-  count.turns = fastest * std::abs(scene.integrator.step) / (2 * std::acos(-1.0));
+  if (const auto turning = turning_steps(scene)) count.turns = std::abs(scene.integrator.step) / turning->period;
   return count;
 }
 

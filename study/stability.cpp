@@ -269,10 +269,12 @@ std::map<int, double> resonances_of(const KeplerSteps& kepler, double scale) {
 
 /// A step that is accurate, and far from where the method fails.
 /// @param kepler  of a method along Kepler arcs
-std::optional<double> recommended(const StabilityRow& row, double scale, const std::optional<KeplerSteps>& kepler) {
+std::optional<double> recommended(const StabilityRow& row, double scale, const std::optional<KeplerSteps>& kepler,
+                                  const std::optional<TurningSteps>& turning) {
   const LinearTheory& theory = row.theory;
   double z = theory.accurate > 0 ? theory.accurate : M_PI / 10;
   if (kepler) z = kepler->recommended() * scale;
+  if (turning && turning->by_axes) z = std::min(z, turning->recommended() * scale);
   for (const auto& limit : {row.limit_h_omega, theory.limit}) {
     if (limit) z = std::min(z, *limit / 2);
   }
@@ -293,6 +295,13 @@ void check_motion(const Scene& scene, double frequency) {
   double size = sum_over<double>(
       s.size(), [&](Index i) { return norm2(s.velocities()[i]) + frequency * frequency * norm2(s.positions()[i]); });
   for (const double y : s.variables()) size += y * y;
+  bool all_held = has_bodies(s);
+  for (Index i = 0; i < s.size() && all_held; ++i) all_held = s.bodies()->is_held(i);
+  if (all_held || (!(size > 0) && has_bodies(s))) {
+    throw Error(
+        "the bodies turn, but nothing else moves, and stability looks at positions and velocities; use compare "
+        "for turns");
+  }
   if (!(size > 0)) throw Error("everything rests at the origin, where no step is too long; start the scene elsewhere");
 }
 
@@ -349,6 +358,7 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
     Candidate who = fixed_candidate(scene, name);
     if (std::find(methods.begin(), methods.end(), who) == methods.end()) methods.push_back(std::move(who));
   }
+  found.turning = turning_steps(scene);
   found.spectrum = spectrum_along(scene);
   const bool oscillates = scene.hamiltonian.constraints.empty();  // else forces alone tell no frequencies
   if (!oscillates) found.spectrum = {};
@@ -370,7 +380,7 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
     found.solution_leaves = growth.leaves();
     const double scale = found.mode.scale();
     if (scale > 0) {
-      row.recommended_step = recommended(row, scale, kepler);
+      row.recommended_step = recommended(row, scale, kepler, found.turning);
     } else {
       if (row.limit_step) row.recommended_step = *row.limit_step / 2;
       row.limit_h_omega.reset();

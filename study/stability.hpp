@@ -7,6 +7,7 @@
 #include "study/linear_stability.hpp"
 #include "study/spectrum.hpp"
 #include "study/stability_trial.hpp"
+#include "study/turning_steps.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -52,7 +53,8 @@ struct Stability {
   double growth_told = growth_threshold;  ///< in one step, where a run of a linear problem counts as unbounded
   /// When the solution itself is 100 times as large as at the start [time]: see `SolutionGrowth`.
   std::optional<double> solution_leaves = {};
-  std::optional<KeplerSteps> kepler = {};  ///< where a method steps along Kepler arcs
+  std::optional<KeplerSteps> kepler = {};    ///< where a method steps along Kepler arcs
+  std::optional<TurningSteps> turning = {};  ///< where bodies turn
   std::vector<StabilityRow> rows = {};
 };
 
@@ -67,8 +69,9 @@ struct Stability {
 /// Where the solution itself leaves all bounds, as a body that falls or escapes, runs are judged up to when it does.
 ///
 /// Recommended: the step of the accuracy that leapfrog has with 20 steps in the shortest period (see `LinearTheory`),
-/// at most half the limit; along Kepler arcs, that of `KeplerSteps` instead. Of those, linear theory knows no limit:
-/// the unperturbed step is exact. Their resonances are with the shortest period, n = 1 to 6.
+/// at most half the limit; along Kepler arcs, that of `KeplerSteps` instead; of turns axis by axis, no more than that
+/// of `TurningSteps`. Of those, linear theory knows no limit: the unperturbed step is exact. Their resonances are with
+/// the shortest period, n = 1 to 6.
 /// @throws Error  for methods that are not known, cannot serve the scene, or have no fixed steps; for a scene at rest
 /// @cost a few seconds for each method on a few bodies
 Stability find_stability(const Scene& scene, const StabilityOptions& options = {});
@@ -88,6 +91,9 @@ std::string to_html(const Stability& found);
 
 /// What is known of Kepler arcs, in sentences; none where no method steps along them.
 std::vector<std::string> kepler_lines(const Stability& found);
+
+/// What is known of turns, in a sentence; none where no body turns.
+std::vector<std::string> turning_lines(const Stability& found);
 
 /// That the solution itself leaves all bounds, in a sentence; none where it does not.
 std::vector<std::string> growth_lines(const Stability& found);

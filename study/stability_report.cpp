@@ -92,6 +92,7 @@ std::string to_html(const Stability& found) {
                         found.linear ? "; the problem is linear" : "");
   }
   for (const std::string& line : kepler_lines(found)) body += "<p class=\"lead\">" + html_text(line) + ".</p>\n";
+  for (const std::string& line : turning_lines(found)) body += "<p class=\"lead\">" + html_text(line) + ".</p>\n";
   for (const std::string& line : growth_lines(found)) body += "<p class=\"lead\">" + html_text(line) + ".</p>\n";
   body += limits_of(found, unit) + figures_of(found, unit);
   std::string messages;

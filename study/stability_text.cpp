@@ -23,6 +23,13 @@ Json json_of(const KeplerSteps& kepler) {
                        {"rule_longest_step", kepler.longest()}});
 }
 
+Json json_of(const TurningSteps& turning) {
+  return Json::object({{"period", turning.period},
+                       {"period_of", turning.body},
+                       {"rotor", turning.by_axes ? "axes" : "exact"},
+                       {"rule_recommended_step", turning.by_axes ? Json(turning.recommended()) : Json()}});
+}
+
 }  // namespace
 
 std::string reason_text(const StabilityRow& row) {
@@ -53,6 +60,18 @@ std::vector<std::string> kepler_lines(const Stability& found) {
       fmt::format("rule, no limit: 16 steps in the fastest passage of a pericenter, {:.6g}{} of {}: at most {:.4g}{}",
                   kepler.passage, unit, kepler.passage_of, kepler.longest(), unit));
   return lines;
+}
+
+std::vector<std::string> turning_lines(const Stability& found) {
+  if (!found.turning) return {};
+  const TurningSteps& turning = *found.turning;
+  const std::string unit = found.time_unit == "1" ? "" : " " + found.time_unit;
+  const std::string rule = turning.by_axes ? fmt::format(
+                                                 "20 steps in it, at most {:.4g}{}, are a rule for turns axis by "
+                                                 "axis",
+                                                 turning.recommended(), unit)
+                                           : "exact turns follow it at any step";
+  return {fmt::format("{} turns fastest, once in {:.6g}{}: {}", turning.body, turning.period, unit, rule)};
 }
 
 std::vector<std::string> growth_lines(const Stability& found) {
@@ -100,6 +119,7 @@ std::string to_json(const Stability& found) {
                        {"growth_threshold", found.growth_told},
                        {"theory_growth_threshold", growth_threshold},
                        {"kepler", found.kepler ? json_of(*found.kepler) : Json()},
+                       {"turning", found.turning ? json_of(*found.turning) : Json()},
                        {"decorators", Json::list_of(found.decorators)},
                        {"rows", Json::list(rows)}})
       .text();
@@ -117,6 +137,7 @@ std::string to_text(const Stability& found) {
     out += "no oscillation is known; only steps are given\n";
   }
   for (const std::string& line : kepler_lines(found)) out += plain_line(line) + "\n";
+  for (const std::string& line : turning_lines(found)) out += plain_line(line) + "\n";
   for (const std::string& line : growth_lines(found)) out += line + "\n";
   if (!found.decorators.empty()) {
     out += fmt::format("every method is wrapped by {}, so linear theory, which is for bare methods, is left out\n",

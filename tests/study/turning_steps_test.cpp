@@ -1,0 +1,56 @@
+// What `stability` and `explain` say of bodies that turn.
+
+#include "study/turning_steps.hpp"
+#include "study/stability.hpp"
+#include "tests/study/scenes.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace noether::test {
+namespace {
+
+/// A slow rock and a fast one on a spring each.
+Scene rocks(const std::string& rotor) {
+  return read_scene(
+      "units = 'reduced'\n"
+      "[[particles.rigid_body]]\nname = 'slow'\nmass = 1\ninertia = [1, 2, 2.5]\nx = [1, 0, 0]\n"
+      "v = [0, 0, 0]\nangular_velocity = [0, 0, 1]\n"
+      "[[particles.rigid_body]]\nname = 'fast'\nmass = 1\ninertia = [1, 2, 2.5]\nx = [0, 1, 0]\n"
+      "v = [0, 0, 0]\nangular_velocity = [0, 6, 8]\n"
+      "[hamiltonian]\ntype = 'kinetic_potential'\nrotor = '" +
+          rotor +
+          "'\n[[hamiltonian.force]]\ntype = 'harmonic_field'\nk = 1\n"
+          "[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 1000\n",
+      "rocks.toml");
+}
+
+}  // namespace
+
+TEST_CASE("the fastest turn is known, and a rule of steps where turns are not exact", "[stability][bodies]") {
+  for (const std::string rotor : {"exact", "axes"}) {
+    const Stability found = find_stability(rocks(rotor), {.methods = {"verlet"}, .confirm_steps = 1000});
+    REQUIRE(found.turning);
+    CHECK(std::abs(found.turning->period - 2 * std::acos(-1.0) / 10) < 1e-14);
+    CHECK(found.turning->body == "fast");
+    const bool by_axes = rotor == "axes";
+    CHECK(found.turning->by_axes == by_axes);
+    REQUIRE(found.rows.at(0).recommended_step);
+    if (by_axes) CHECK(std::abs(*found.rows[0].recommended_step - std::acos(-1.0) / 100) < 1e-12);
+    if (!by_axes) CHECK(*found.rows[0].recommended_step > 0.2);  // that of the spring
+    CHECK(to_text(found).find(by_axes ? "fast turns fastest, once in 0.628319: 20 steps in it, at most 0.03142, are a "
+                                        "rule for turns axis by axis"
+                                      : "fast turns fastest, once in 0.628319: exact turns follow it at any step") !=
+          std::string::npos);
+    CHECK(to_json(found).find("\"period_of\":\"fast\"") != std::string::npos);
+  }
+}
+
+TEST_CASE("points do not turn, nor bodies without spin", "[stability][bodies]") {
+  Scene still = rocks("exact");
+  for (Index i = 0; i < 2; ++i) still.particles.column<BodySpin>().set(i, Vec3<double>::Zero());
+  CHECK_FALSE(turning_steps(still));
+}
+
+}  // namespace noether::test
