@@ -52,6 +52,7 @@ const std::vector<Example> all = {
     {"outer_solar_system", outer_solar_system::program, Length::nightly, Bits::everywhere, 4000},
     {"pendulum", pendulum::program, Length::quick},
     {"pythagorean", pythagorean::program, Length::nightly, Bits::everywhere, 20'000},
+    {"rigid_water", rigid_water::program, Length::quick, Bits::of_this_machine, 100},
     {"robertson", robertson::program, Length::quick, Bits::of_this_machine, 0},
     {"sleeping_top", sleeping_top::program, Length::quick, Bits::of_this_machine},
     {"solar_system", solar_system::program, Length::slow},

@@ -8,14 +8,18 @@
 #include "examples/robertson/kinetics.hpp"
 
 #include "constraints/constraint_residual.hpp"
+#include "constraints/constraint_set.hpp"
 #include "constraints/constraint_solver.hpp"
 #include "constraints/distance.hpp"
 #include "constraints/structure_constraints.hpp"
 #include "constraints/surfaces.hpp"
 #include "engine/bodies.hpp"
+#include "engine/charge.hpp"
 #include "engine/given_orbit.hpp"
 #include "engine/simulation.hpp"
+#include "engine/sites.hpp"
 #include "engine/statistics.hpp"
+#include "engine/topology.hpp"
 #include "forces/bonded.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/external_fields.hpp"
@@ -50,6 +54,7 @@
 #include "monitors/spin.hpp"
 #include "monitors/temperature.hpp"
 #include "monitors/time_correlation.hpp"
+#include "monitors/turning.hpp"
 #include "monitors/variables.hpp"
 #include "numbers/elliptic.hpp"
 #include "numbers/quantity.hpp"
@@ -66,6 +71,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -166,6 +172,9 @@ namespace examples::pendulum {
 }
 namespace examples::pythagorean {
 #include "examples/pythagorean/main.cpp"
+}
+namespace examples::rigid_water {
+#include "examples/rigid_water/main.cpp"
 }
 namespace examples::sleeping_top {
 #include "examples/sleeping_top/main.cpp"
