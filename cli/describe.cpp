@@ -47,6 +47,7 @@ void describe_part(const std::string& kind, const PartInfo& info, bool json) {
                                      {"quantities", info.quantities},
                                      {"table", table_of(kind)},
                                      {"fields", json_of(info.fields)},
+                                     {"columns", json_of(info.columns)},
                                      {"source", info.source},
                                      {"bibtex", entries_of(info.source)}})
                            .text());
@@ -57,6 +58,7 @@ void describe_part(const std::string& kind, const PartInfo& info, bool json) {
   if (!info.quantities.empty()) fmt::print("\n  quantities: {}\n", info.quantities);
   if (const std::string table = table_of(kind); !table.empty()) fmt::print("\n  belongs in {}\n", table);
   print_fields(info.fields);
+  if (!info.columns.empty()) fmt::print("\n  bodies take {}\n", fmt::join(texts_of(info.columns), ", "));
   const std::string entries = entries_of(info.source);
   if (!entries.empty()) fmt::print("\n{}", entries);
 }

@@ -71,6 +71,7 @@ void print_part(const std::string& kind, const PartInfo& info) {
   if (!info.quantities.empty()) fmt::print("\nQuantities: {}.\n", info.quantities);
   if (info.fields.empty() && kind != "hamiltonian") fmt::print("\nIt has no keys of its own.\n");
   print_keys(info.fields);
+  if (!info.columns.empty()) fmt::print("\nBodies take {}.\n", fmt::join(texts_of(info.columns, "`"), ", "));
 }
 
 /// Which keys each method takes beside those of all methods, methods with the same keys together.
@@ -138,7 +139,8 @@ void print_json(const Parts& parts) {
                                 {"formula", info.formula},
                                 {"quantities", info.quantities},
                                 {"table", table_of(kind)},
-                                {"fields", json_of(info.fields)}}));
+                                {"fields", json_of(info.fields)},
+                                {"columns", json_of(info.columns)}}));
   }
   for (const MethodInfo* info : parts.methods()) {
     methods.push_back(Json::object({{"name", info->name}, {"fields", json_of(fields_of(*info))}}));

@@ -91,6 +91,22 @@ Json json_of(const std::vector<FieldInfo>& fields) {
   return Json::list(all);
 }
 
+Json json_of(const std::vector<ColumnInfo>& columns) {
+  std::vector<Json> all;
+  for (const ColumnInfo& one : columns)
+    all.push_back(Json::object({{"name", one.name}, {"dimension", one.dimension}, {"width", one.width}}));
+  return Json::list(all);
+}
+
+std::vector<std::string> texts_of(const std::vector<ColumnInfo>& columns, std::string_view mark) {
+  std::vector<std::string> all;
+  for (const ColumnInfo& one : columns) {
+    const std::string dimension = one.dimension == "1" ? "" : " [" + one.dimension + "]";
+    all.push_back(fmt::format("{}{}{}{}", mark, one.name, mark, dimension));
+  }
+  return all;
+}
+
 std::string entries_of(std::string_view sources) {
   std::string all;
   while (!sources.empty()) {

@@ -19,6 +19,11 @@ std::string table_of(const std::string& kind);
 
 /// Keys as a list of JSON objects.
 Json json_of(const std::vector<FieldInfo>& fields);
+Json json_of(const std::vector<ColumnInfo>& columns);
+
+/// Keys that bodies have because of a part, each with its dimension: `radius` [length].
+/// @param mark  around the names
+std::vector<std::string> texts_of(const std::vector<ColumnInfo>& columns, std::string_view mark = "");
 
 /// The entries of docs/references.bib for the sources "A, B", one below the other.
 std::string entries_of(std::string_view sources);

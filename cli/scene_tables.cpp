@@ -65,7 +65,8 @@ SceneTable particles() {
       "Which particles there are. They come from `bodies`, from `[[particles.body]]` tables, from both, from a "
       "`structure`, or from a builder (`type`).",
       fields({
-          {"bodies", "text", "1", "", "file of bodies: CSV, vector tables of JPL Horizons, or the run.h5 of a run"},
+          {"bodies", "text", "1", "",
+           "file of bodies: CSV, vector tables of JPL Horizons, or the run.h5 of a run"},
           {"bodies_sha256", "text", "1", "", "the SHA-256 of the file; another file is refused"},
           {"structure", "text", "1", "", "file of a structure: LAMMPS data, (extended) XYZ or .gro"},
           {"structure_sha256", "text", "1", "", "the SHA-256 of the file; another file is refused"},

@@ -79,7 +79,7 @@ Quaternion<double> quaternion_of(const Mat3<double>& r) {
     q[1 + j] = r(i, j) + r(j, i);
     q[1 + k] = r(i, k) + r(k, i);
   }
-  return q / std::sqrt(norm_defect(q) + 1);
+  return q / std::sqrt(squared_length(q));
 }
 
 }  // namespace
@@ -88,24 +88,8 @@ bool Bodies::any_held() const {
   return std::any_of(kinds.begin(), kinds.end(), [](const BodyKind& kind) { return kind.held; });
 }
 
-Index Bodies::site_count(Index n) const {
-  Index count = 0;
-  for (Index i = 0; i < n; ++i) {
-    const BodyKind* of = kind(i);
-    count += of != nullptr ? static_cast<Index>(of->sites.size()) : 1;
-  }
-  return count;
-}
-
-Index Bodies::massive_sites(Index n) const {
-  Index count = 0;
-  for (Index i = 0; i < n; ++i) {
-    const BodyKind* of = kind(i);
-    count += of == nullptr ? 1 : std::count_if(of->sites.begin(), of->sites.end(), [](const BodySite& site) {
-      return site.mass > 0;
-    });
-  }
-  return count;
+Index BodyKind::massive_sites() const {
+  return std::count_if(sites.begin(), sites.end(), [](const BodySite& site) { return site.mass > 0; });
 }
 
 RigidBody body_of_inertia(std::string name, double mass, const Vec3<double>& inertia) {
@@ -119,6 +103,16 @@ RigidBody top(std::string name, double mass, const Vec3<double>& inertia, const 
   RigidBody body = body_of_inertia(std::move(name), mass, inertia);
   body.held = true;
   body.center = center;
+  // The second moments of its mass about the fixed point are no smaller than those of all of it at its centre.
+  Mat3<double> beyond = -mass * center * center.transpose();
+  for (int k = 0; k < 3; ++k) beyond(k, k) += (inertia[(k + 1) % 3] + inertia[(k + 2) % 3] - inertia[k]) / 2;
+  const double least = Eigen::SelfAdjointEigenSolver<Mat3<double>>(beyond).eigenvalues().minCoeff();
+  if (body.warning.empty() && least < -1e-12 * inertia.maxCoeff()) {
+    body.warning = fmt::format(
+        "no mass with its centre at {} has the moments of inertia {} of body '{}' about its fixed point; they are "
+        "followed as they are",
+        text_of(center), text_of(inertia), body.name);
+  }
   body.sites[0].place = center;
   return body;
 }
@@ -134,7 +128,7 @@ RigidBody ellipsoid(std::string name, double mass, const Vec3<double>& semi_axes
                          mass / 5 * Vec3<double>(square[1] + square[2], square[0] + square[2], square[0] + square[1]));
 }
 
-RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, bool linear, double straight) {
+RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, std::optional<bool> linear, double straight) {
   RigidBody body{.name = std::move(name)};
   if (sites.size() < 2) {
     throw Error(fmt::format("body '{}' has {} site{}; two or more are expected, or its moments of inertia", body.name,
@@ -157,13 +151,13 @@ RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, bool line
   const double largest = moments.maxCoeff();
   Index line = 0;
   const bool in_a_line = moments.minCoeff(&line) <= straight * largest;
-  if (!(largest > 0) || (in_a_line && !linear)) {
-    throw Error(fmt::format("the sites of body '{}' are in a line, so it has two moments of inertia alone; give linear "
+  if (!(largest > 0) || (in_a_line && !linear.value_or(true))) {
+    throw Error(fmt::format("the sites of body '{}' are in a line, so it has only two moments of inertia; give linear "
                             "= true if that is meant",
                             body.name),
                 {.key = "sites"});
   }
-  if (linear && !in_a_line) {
+  if (linear.value_or(false) && !in_a_line) {
     throw Error(
         fmt::format("the sites of body '{}' are not in a line, though linear = true says so; take it out", body.name),
         {.key = "linear"});
@@ -188,15 +182,30 @@ RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, bool line
 
 namespace {
 
+/// An orientation of any length as a unit quaternion. @throws Error  if it is 0 or not finite
+Quaternion<double> unit_orientation(const RigidBody& body, const Quaternion<double>& given) {
+  if (squared_length(given) == 1) return given;
+  const double largest = given.cwiseAbs().maxCoeff();
+  if (!(largest > 0) || !given.allFinite()) {
+    throw Error(fmt::format("the orientation of body '{}' is [{}]; four numbers that are not all 0 are expected",
+                            body.name, fmt::join(given.data(), given.data() + 4, ", ")),
+                {.key = "orientation"});
+  }
+  const Quaternion<double> scaled = given * std::ldexp(1.0, -std::ilogb(largest));  // exact; its squares are in range
+  return scaled / std::sqrt(squared_length(scaled));
+}
+
 /// The angular momentum in space.
 Vec3<double> spin_of(const RigidBody& body, const BodyState& state, const Quaternion<double>& q) {
   const int ways = (state.spin ? 1 : 0) + (state.spin_in_body ? 1 : 0) + (state.angular_velocity ? 1 : 0) +
                    (state.spin_period ? 1 : 0);
   if (ways > 1) {
-    throw Error(fmt::format("body '{}' is told more than once how it turns; give one of spin, angular_velocity and "
-                            "spin_period",
+    throw Error(fmt::format("the rotation of body '{}' is given more than once; give one of spin, angular_velocity "
+                            "and spin_period",
                             body.name),
-                {.key = state.spin ? "spin" : "angular_velocity"});
+                {.key = state.spin               ? "spin"
+                        : state.angular_velocity ? "angular_velocity"
+                                                 : "spin_period"});
   }
   const Mat3<double> r = rotation_matrix(q);
   const auto without_line = [&](Vec3<double> pi) {  // a body in a line has no turn about it
@@ -206,13 +215,14 @@ Vec3<double> spin_of(const RigidBody& body, const BodyState& state, const Quater
       if (std::abs(pi[k]) > 1e-9 * size) {
         throw Error(
             fmt::format("body '{}' is a line, and has no spin about it; a spin across it is expected", body.name),
-            {.key = "spin"});
+            {.key = state.angular_velocity ? "angular_velocity" : "spin"});
       }
       pi[k] = 0;
     }
     return pi;
   };
   const bool line = turning_freedoms(body.inertia) == 2;
+  if (line && state.angular_velocity) static_cast<void>(without_line(*state.angular_velocity));
   if (state.spin) return line ? to_space(r, without_line(to_body(r, *state.spin))) : *state.spin;
   Vec3<double> in_body = state.spin_in_body.value_or(Vec3<double>::Zero());
   if (state.angular_velocity) in_body = state.angular_velocity->cwiseProduct(body.inertia);
@@ -232,16 +242,8 @@ Vec3<double> spin_of(const RigidBody& body, const BodyState& state, const Quater
 
 }  // namespace
 
-Index add_body(ParticleSystem<double>& s, const RigidBody& body, const BodyState& state) {
-  const double length2 = norm_defect(state.orientation) + 1;
-  if (!(length2 > 0) || !std::isfinite(length2)) {
-    throw Error(fmt::format("the orientation of body '{}' is [{}]; four numbers that are not all 0 are expected",
-                            body.name, fmt::join(state.orientation.data(), state.orientation.data() + 4, ", ")),
-                {.key = "orientation"});
-  }
-  Quaternion<double> given = state.orientation / std::sqrt(length2);
-  if (length2 == 1) given = state.orientation;
-  const Quaternion<double> q = quaternion_product(given, body.axes);
+Index add_body(ParticleSystem<double>& s, Bodies& bodies, const RigidBody& body, const BodyState& state) {
+  const Quaternion<double> q = quaternion_product(unit_orientation(body, state.orientation), body.axes);
   const Vec3<double> spin = spin_of(body, state, q);
   for (const ColumnInfo& info : {column_info<BodyOrientation>(), column_info<BodySpin>(), column_info<BodyInertia>()}) {
     s.add_column(info);
@@ -250,13 +252,18 @@ Index add_body(ParticleSystem<double>& s, const RigidBody& body, const BodyState
   s.column<BodyOrientation>().set(i, q);
   s.column<BodySpin>().set(i, spin);
   s.column<BodyInertia>().set(i, body.inertia);
-  Bodies bodies = s.bodies() != nullptr ? *s.bodies() : Bodies{};
   const BodyKind kind{body.sites, body.held};
   const auto known = std::find(bodies.kinds.begin(), bodies.kinds.end(), kind);
   const auto at = static_cast<int>(known - bodies.kinds.begin());
   if (known == bodies.kinds.end()) bodies.kinds.push_back(kind);
   bodies.kind_of.resize(static_cast<std::size_t>(i), -1);
   bodies.kind_of.push_back(at);
+  return i;
+}
+
+Index add_body(ParticleSystem<double>& s, const RigidBody& body, const BodyState& state) {
+  Bodies bodies = s.bodies() != nullptr ? *s.bodies() : Bodies{};
+  const Index i = add_body(s, bodies, body, state);
   s.set_bodies(std::make_shared<const Bodies>(std::move(bodies)));
   return i;
 }

@@ -54,6 +54,8 @@ struct BodyKind {
   std::vector<BodySite> sites;
   bool held = false;  ///< a fixed point holds it, about which it turns: its row is that point, and stays there
 
+  Index massive_sites() const;
+
   bool operator==(const BodyKind&) const = default;
 };
 
@@ -74,10 +76,6 @@ struct Bodies {
     return of != nullptr && of->held;
   }
   bool any_held() const;
-  /// Sites of the first `n` particles, points among them as one each.
-  Index site_count(Index n) const;
-  /// Those with mass.
-  Index massive_sites(Index n) const;
 
   bool operator==(const Bodies&) const = default;
 };
@@ -112,10 +110,11 @@ RigidBody ellipsoid(std::string name, double mass, const Vec3<double>& semi_axes
 
 /// A body of mass points: mass, centre, principal axes and moments follow from its sites.
 /// @param sites  places in any axes [length], masses [mass], charges
-/// @param linear  that sites in a line are meant to be a body of two moments
+/// @param linear  whether sites in a line are meant to be a body of two moments; nothing: as it comes
 /// @param straight  the least moment by the largest at which sites are in a line
 /// @throws Error  for fewer than two sites, no mass, or sites in a line that nobody said are
-RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, bool linear = false, double straight = 1e-12);
+RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, std::optional<bool> linear = false,
+                        double straight = 1e-12);
 
 /// Where a body is, and how it moves and turns.
 struct BodyState {
@@ -130,6 +129,9 @@ struct BodyState {
 /// Appends a body, with the columns that bodies have. @return its index
 /// @throws Error  for an orientation of length 0, a period of 0, or more than one way to say how it turns
 Index add_body(ParticleSystem<double>& s, const RigidBody& body, const BodyState& state = {});
+/// The same of one of many bodies, whose kinds are collected: the particles get them by `set_bodies` after the last
+/// one.
+Index add_body(ParticleSystem<double>& s, Bodies& bodies, const RigidBody& body, const BodyState& state);
 
 /// Whether some of the particles turn.
 template <class Real> bool has_bodies(const ParticleSystem<Real>& s) { return s.bodies() != nullptr; }
@@ -137,6 +139,18 @@ template <class Real> bool has_bodies(const ParticleSystem<Real>& s) { return s.
 /// The angular momentum in the principal axes, Pi = R^T S [mass length^2/time].
 template <class Real> Vec3<Real> spin_in_body(const Quaternion<Real>& q, const Vec3<Real>& spin) {
   return to_body(rotation_matrix(q), spin);
+}
+/// The angular velocity in the principal axes; about the axis of a line there is none [1/time].
+template <class Real> Vec3<Real> rate_in_body(const Vec3<Real>& in_body, const Vec3<Real>& inertia) {
+  Vec3<Real> rate;
+  for (int k = 0; k < 3; ++k) rate[k] = inertia[k] > Real(0) ? Real(in_body[k] / inertia[k]) : Real(0);
+  return rate;
+}
+/// The same in space.
+template <class Real>
+Vec3<Real> angular_velocity(const Quaternion<Real>& q, const Vec3<Real>& spin, const Vec3<Real>& inertia) {
+  const Mat3<Real> axes = rotation_matrix(q);
+  return to_space<Real>(axes, rate_in_body<Real>(to_body<Real>(axes, spin), inertia));
 }
 /// Degrees of freedom in which particle `i` turns: 3, of a body in a line 2, of a point 0.
 template <class Real> int turning_freedoms(const Vec3<Real>& inertia) {

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -24,29 +23,17 @@ using Molecule = std::vector<Index>;
 
 /// The molecules in the order of their first atoms, single atoms among them.
 std::vector<Molecule> molecules_of(const ParticleSystem<double>& atoms) {
-  const auto n = static_cast<std::size_t>(atoms.size());
-  std::vector<std::size_t> above(n);
-  std::iota(above.begin(), above.end(), std::size_t{0});
-  const auto root = [&](std::size_t i) {
-    while (above[i] != i) i = above[i] = above[above[i]];
-    return i;
-  };
-  const Topology* topology = atoms.topology();
-  if (topology != nullptr && topology->bonds.empty() && !topology->molecules.empty()) {
-    std::map<std::int64_t, std::size_t> first;  // 0 is no molecule
-    for (std::size_t i = 0; i < n; ++i) {
-      if (topology->molecules[i] != 0) above[i] = first.emplace(topology->molecules[i], i).first->second;
-    }
-  }
-  for (std::size_t k = 0; topology != nullptr && k < topology->bonds.size(); ++k) {
-    const auto [i, j] = topology->bonds[k].particles;
-    const std::size_t a = root(static_cast<std::size_t>(i)), b = root(static_cast<std::size_t>(j));
-    above[std::max(a, b)] = std::min(a, b);
-  }
-  std::map<std::size_t, Molecule> found;
-  for (std::size_t i = 0; i < n; ++i) found[root(i)].push_back(static_cast<Index>(i));
+  const Topology none, *given = atoms.topology();
+  const Topology& topology = given != nullptr ? *given : none;
+  const std::vector<Index> first =
+      topology.bonds.empty() ? molecules_by_number(topology, atoms.size()) : molecules_by_bonds(topology, atoms.size());
   std::vector<Molecule> all;
-  for (auto& [first, molecule] : found) all.push_back(std::move(molecule));
+  std::vector<std::size_t> place(first.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const auto at = static_cast<std::size_t>(first[i]);
+    if (at == i) place[i] = all.size(), all.emplace_back();
+    all[place[at]].push_back(static_cast<Index>(i));
+  }
   return all;
 }
 
@@ -88,15 +75,16 @@ class MakeRigid {
     }
   }
 
-  ParticleSystem<double> make() {
+  ParticleSystem<double> make(const std::vector<Molecule>& molecules) {
     if (charges_ != nullptr) made_.add_column<Charge>();
-    for (const Molecule& molecule : molecules_of(atoms_)) {
+    for (const Molecule& molecule : molecules) {
       if (molecule.size() == 1) {
         add_point(molecule.front());
       } else {
         add_molecule(molecule);
       }
     }
+    if (!bodies_.kinds.empty()) made_.set_bodies(std::make_shared<const Bodies>(std::move(bodies_)));
     give_topology();
     made_.set_box(atoms_.box());
     return std::move(made_);
@@ -130,9 +118,10 @@ class MakeRigid {
     center /= mass;
     v /= mass;
     for (Vec3<double>& one : x) one -= center;
-    const bool is_new = kinds_.find(kind) == kinds_.end();
-    if (is_new) kinds_.emplace(kind, body_of(molecule, x));
-    RigidBody body = kinds_.at(kind);
+    auto known = kinds_.find(kind);
+    const bool is_new = known == kinds_.end();
+    if (is_new) known = kinds_.emplace(kind, body_of(molecule, x)).first;
+    RigidBody body = known->second;
     body.name = atoms_.name(first);
     const Quaternion<double> q = is_new ? body.axes : laid_over(body.sites, x);
     const Mat3<double> r = rotation_matrix<double>(q);
@@ -146,7 +135,7 @@ class MakeRigid {
     }
     if (!(most <= tolerance_ * farthest)) refuse_shape(molecule, most);
     body.axes = {1, 0, 0, 0};  // the rotation is from the principal axes already
-    const Index at = add_body(made_, body, {.x = origin + center, .v = v, .orientation = q, .spin = spin});
+    const Index at = add_body(made_, bodies_, body, {.x = origin + center, .v = v, .orientation = q, .spin = spin});
     double total = 0;
     for (const Index i : molecule) total += charge(i);
     if (charges_ != nullptr) made_.column<Charge>()[at] = total;
@@ -185,11 +174,10 @@ class MakeRigid {
   }
 
   [[noreturn]] void refuse_folded(const Molecule& molecule) const {
-    throw Error(
-        fmt::format("the molecule of '{}' reaches over a quarter of the box, and without bonds it cannot be told "
-                    "how; give bonds",
-                    atoms_.name(molecule.front())),
-        {.key = "molecules"});
+    throw Error(fmt::format("the molecule of '{}' reaches over a quarter of the box, so without bonds its shape is "
+                            "ambiguous; add bonds",
+                            atoms_.name(molecule.front())),
+                {.key = "molecules"});
   }
 
   RigidBody body_of(const Molecule& molecule, const std::vector<Vec3<double>>& x) const {
@@ -199,11 +187,8 @@ class MakeRigid {
       sites.push_back({x[k], atoms_.masses()[i], charge(i), type(i), atoms_.name(i)});
     }
     const std::string& name = atoms_.name(molecule.front());
-    try {
-      return body_of_sites(name, sites, true, 1e-5);  // two atoms, or carbon dioxide in the digits of a file
-    } catch (const Error&) {
-      return body_of_sites(name, sites);
-    }
+    return body_of_sites(name, std::move(sites), std::nullopt,
+                         1e-5);  // carbon dioxide in the digits of a file is a line
   }
 
   [[noreturn]] void refuse_shape(const Molecule& molecule, double most) const {
@@ -231,17 +216,17 @@ class MakeRigid {
   double tolerance_;
   const ScalarColumn<double>* charges_;
   ParticleSystem<double> made_;
+  Bodies bodies_;
   std::vector<std::vector<Index>> bonded_;  ///< to each atom; empty without bonds
   std::map<AtomKinds, RigidBody> kinds_;
   std::vector<std::int64_t> types_;
 };
 
 /// @throws Error  for an excluded or scaled pair of atoms of two molecules, which bodies do not know
-void check_pairs(const ParticleSystem<double>& atoms) {
+void check_pairs(const ParticleSystem<double>& atoms, const std::vector<Molecule>& all) {
   const Topology* topology = atoms.topology();
   if (topology == nullptr) return;
   std::vector<std::size_t> molecule(static_cast<std::size_t>(atoms.size()));
-  const std::vector<Molecule> all = molecules_of(atoms);
   for (std::size_t k = 0; k < all.size(); ++k) {
     for (const Index i : all[k]) molecule[static_cast<std::size_t>(i)] = k;
   }
@@ -259,8 +244,9 @@ void check_pairs(const ParticleSystem<double>& atoms) {
 }  // namespace
 
 ParticleSystem<double> make_rigid(const ParticleSystem<double>& atoms, double tolerance) {
-  check_pairs(atoms);
-  return MakeRigid(atoms, tolerance).make();
+  const std::vector<Molecule> molecules = molecules_of(atoms);
+  check_pairs(atoms, molecules);
+  return MakeRigid(atoms, tolerance).make(molecules);
 }
 
 }  // namespace noether

@@ -174,6 +174,10 @@ std::string when_in_time(const Schedule& schedule) {
   return schedule.interval == 0 ? "from a time on" : fmt::format("every {} of time", schedule.interval);
 }
 
+std::string_view how_without_time(const Schedule& schedule) {
+  return schedule.interval == 0 && schedule.times.empty() ? "without after" : "by steps";
+}
+
 bool Looks::is_listed(std::int64_t step) const {
   const auto later = std::upper_bound(at_steps.begin(), at_steps.end(), step);
   return later != at_steps.begin() && step - *std::prev(later) < in_a_row;

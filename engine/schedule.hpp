@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace noether {
@@ -57,6 +58,8 @@ std::vector<std::int64_t> steps_at(const std::vector<double>& times, double star
 std::int64_t first_multiple(double after, double start, double dt, std::int64_t cadence);
 /// When a monitor by time looks, in words.
 std::string when_in_time(const Schedule& schedule);
+/// How it could look instead.
+std::string_view how_without_time(const Schedule& schedule);
 
 // Monitors that look at every step should not wait for a division.
 inline bool is_multiple(std::int64_t step, std::int64_t cadence) { return cadence == 1 || step % cadence == 0; }

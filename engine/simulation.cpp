@@ -203,8 +203,8 @@ template <class Real> void Simulation<Real>::turn_back(double until) {
   if (!claims.backward) refuse(fmt::format("method '{}' cannot go back in time", claims.method));
   for (const auto& scheduled : monitors_) {
     if (!scheduled.schedule.by_time() && !scheduled.schedule.after) continue;
-    refuse(fmt::format("monitor '{}' samples {}, so the run cannot turn back; attach it by steps", scheduled.name,
-                       detail::when_in_time(scheduled.schedule)));
+    refuse(fmt::format("monitor '{}' samples {}, so the run cannot turn back; attach it {}", scheduled.name,
+                       detail::when_in_time(scheduled.schedule), detail::how_without_time(scheduled.schedule)));
   }
   edit_at(shown_at_, [](ParticleSystem<Real>& particles) { particles.clock().turn(); });
 }
@@ -585,8 +585,8 @@ template <class Real> void Simulation<Real>::change_step(double dt) {
   for (const auto& scheduled : monitors_) {
     const detail::Looks& looks = scheduled.schedule;
     if (looks.interval == 0 && looks.times.empty() && looks.first == 0) continue;
-    throw Error(fmt::format("monitor '{}' samples {}, which a new step would shift; attach it by steps", scheduled.name,
-                            detail::when_in_time(scheduled.schedule)));
+    throw Error(fmt::format("monitor '{}' samples {}, which a new step would shift; attach it {}", scheduled.name,
+                            detail::when_in_time(looks), detail::how_without_time(looks)));
   }
   edit_at(std::nullopt, [&](ParticleSystem<Real>& particles) {
     const double now = time();

@@ -29,8 +29,8 @@ class SeriesStatistics {
   /// Mean of all values; 0 without any.
   double mean() const;
   /// Standard error of the mean: from the scatter of the block means and their correlations, up to the first lag at
-  /// which these are not positive; empty below 20 blocks. Too small for values that stay alike for a tenth of the
-  /// series.
+  /// which one is not positive (simpler than Geyer, who adds them in pairs); empty below 20 blocks. Too small for
+  /// values that stay alike for a tenth of the series.
   /// @source Geyer1992
   std::optional<double> mean_error() const;
 

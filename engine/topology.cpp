@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <unordered_map>
 
 namespace noether {
 
@@ -128,6 +130,35 @@ PairKind Topology::pair_kind(int a, int b) const {
   }
   const PairKind& one = pair_kinds[static_cast<std::size_t>(a)];
   return a == b ? one : mix(mixing, one, pair_kinds[static_cast<std::size_t>(b)]);
+}
+
+std::vector<Index> molecules_by_number(const Topology& topology, Index n) {
+  std::vector<Index> first(static_cast<std::size_t>(n));
+  std::iota(first.begin(), first.end(), Index(0));
+  std::unordered_map<std::int64_t, Index> known;
+  for (Index i = 0; i < static_cast<Index>(topology.molecules.size()); ++i) {
+    const std::int64_t number = topology.molecules[static_cast<std::size_t>(i)];
+    if (number != 0) first[static_cast<std::size_t>(i)] = known.emplace(number, i).first->second;
+  }
+  return first;
+}
+
+std::vector<Index> molecules_by_bonds(const Topology& topology, Index n) {
+  std::vector<Index> above(static_cast<std::size_t>(n));
+  std::iota(above.begin(), above.end(), Index(0));
+  const auto root = [&](Index i) {
+    while (above[static_cast<std::size_t>(i)] != i) {
+      Index& next = above[static_cast<std::size_t>(i)];
+      i = next = above[static_cast<std::size_t>(next)];
+    }
+    return i;
+  };
+  for (const BondedTerm<2>& bond : topology.bonds) {
+    const Index a = root(bond.particles[0]), b = root(bond.particles[1]);
+    above[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  for (Index i = 0; i < n; ++i) above[static_cast<std::size_t>(i)] = root(i);
+  return above;
 }
 
 }  // namespace noether

@@ -113,4 +113,9 @@ struct Topology {
   Topology without_rigid_terms(Index n) const;
 };
 
+/// The molecule of each of `n` particles, as the index of its first particle: those of one number, but 0 is none.
+std::vector<Index> molecules_by_number(const Topology& topology, Index n);
+/// The same: those that bonds hold together.
+std::vector<Index> molecules_by_bonds(const Topology& topology, Index n);
+
 }  // namespace noether

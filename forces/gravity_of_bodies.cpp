@@ -1,10 +1,8 @@
 #include "forces/gravity_of_bodies.hpp"
 
 #include "forces/on_sites.hpp"
-#include "numbers/dual.hpp"
 #include "numbers/parallel.hpp"
 
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,8 +21,7 @@ template <class Real> struct Pull {
 /// The bodies of the last evaluation, and their sites where they are asked for.
 template <class Real> struct Pulling {
   std::vector<Pull<Real>> bodies;
-  std::optional<Sites<Real>> sites;
-  std::uint64_t members = 0;
+  KeptSites<Real> sites;
 };
 
 /// What the second degree of a body does at a place, for one unit of mass there and G = 1.
@@ -34,7 +31,7 @@ template <class Real> struct SecondDegree {
   Real potential = Real(0);
 };
 
-/// @param e, over_r2  direction from the body to the place or back, 1 over the square of the distance
+/// @param e, r  direction from the body to the place or back, and the distance
 template <class Real> SecondDegree<Real> second_degree(const Pull<Real>& body, const Vec3<Real>& e, const Real& r) {
   if (body.trace == Real(0)) return {};
   const Real r2 = r * r;
@@ -42,22 +39,24 @@ template <class Real> SecondDegree<Real> second_degree(const Pull<Real>& body, c
   const Vec3<Real> scaled(body.moments[0] / r2 * in_body[0], body.moments[1] / r2 * in_body[1],
                           body.moments[2] / r2 * in_body[2]);
   const Vec3<Real> moment = to_space<Real>(body.axes, scaled);  // I e/r^2
-  const Real along = dot(e, moment), trace = body.trace / r2, half = Real(1) / (Real(2) * r2);
-  return {half * ((Real(15) * along - Real(3) * trace) * e - Real(6) * moment), Real(3) / r * cross<Real>(e, moment),
+  const Real along = dot(e, moment), trace = body.trace / r2, over = Real(1) / (Real(2) * r2);
+  return {over * ((Real(15) * along - Real(3) * trace) * e - Real(6) * moment), Real(3) / r * cross<Real>(e, moment),
           -(trace - Real(3) * along) / (Real(2) * r)};
 }
 
 template <class Real> void look_at(const ParticleSystem<Real>& s, std::vector<Pull<Real>>& bodies) {
   bodies.resize(static_cast<std::size_t>(s.size()));
   const bool turning = s.bodies() != nullptr;
+  const auto* inertia = turning ? &s.template column<BodyInertia>() : nullptr;
+  const auto* orientation = turning ? &s.template column<BodyOrientation>() : nullptr;
   for (Index i = 0; i < s.size(); ++i) {
     Pull<Real>& one = bodies[static_cast<std::size_t>(i)];
     one.x = s.positions()[i];
     one.mass = s.masses()[i];
     one.moments = Vec3<Real>::Zero();
-    if (turning) one.moments = s.template column<BodyInertia>()[i];
+    if (turning) one.moments = (*inertia)[i];
     one.trace = one.moments[0] + one.moments[1] + one.moments[2];
-    if (one.trace != Real(0)) one.axes = rotation_matrix<Real>(s.template column<BodyOrientation>()[i]);
+    if (one.trace != Real(0)) one.axes = rotation_matrix<Real>((*orientation)[i]);
   }
 }
 
@@ -135,6 +134,11 @@ void GravityOfBodies::check_bodies(const Bodies* bodies) {
   throw Error("gravity_of_bodies moves bodies, but a fixed point holds one of them; use uniform_field for a top");
 }
 
+void GravityOfBodies::refuse_one_site(const std::string& body) {
+  throw Error("'" + body + "' has one site, so degree = \"sites\" takes it for a point; give degree = 2, or its sites",
+              {.key = "degree"});
+}
+
 template <class Real>
   requires(std::is_same_v<Real, double> || std::is_same_v<Real, Quad>)
 void GravityOfBodies::add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
@@ -142,9 +146,7 @@ void GravityOfBodies::add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s
   auto& here = out.workspace().template get<Pulling<Real>>();
   const bool by_sites = degree == Figure::sites && s.bodies() != nullptr;
   if (by_sites) {
-    if (!here.sites || here.members != s.members()) here.sites.emplace(s, false);
-    here.members = s.members();
-    here.sites->follow(s);
+    here.sites.follow(s, false);
   } else {
     look_at(s, here.bodies);
   }

@@ -30,8 +30,8 @@ template <> struct EnumNames<Figure> {
 ///     sites:      U = - sum_pairs sum_{a in i, b in j} G m_a m_b/r_ab
 ///
 /// with I_i in space. The first (MacCullagh's formula, for both bodies) leaves out what falls as r^-5; the second is
-/// the full problem of bodies made of mass points. Forces are opposite to the bit, and what their couples lack the
-/// torques have: the angular momentum stays to rounding. A tracer feels them and exerts nothing.
+/// the full problem of bodies made of mass points. Forces are opposite to the bit, and the torques balance their
+/// couples, so that the angular momentum is conserved to rounding. A tracer feels them and exerts nothing.
 /// @cost O(n^2) pairs of bodies; of sites, all pairs of those
 /// @source MurrayDermott1999, MacCullagh1855
 struct GravityOfBodies {
@@ -53,8 +53,18 @@ struct GravityOfBodies {
 
   /// @throws Error  for sites without their masses, or a G that is not above 0
   void check() const;
-  /// @throws Error  for a body that a fixed point holds
-  template <class Real> void check(const ParticleSystem<Real>& s) const { check_bodies(s.bodies()); }
+  /// @throws Error  for a body that a fixed point holds, and, by sites, for one that is no sphere but has one site
+  template <class Real> void check(const ParticleSystem<Real>& s) const {
+    check_bodies(s.bodies());
+    if (degree != Figure::sites || !has_bodies(s)) return;
+    const auto& inertia = s.template column<BodyInertia>();
+    for (Index i = 0; i < s.size(); ++i) {
+      const BodyKind* kind = s.bodies()->kind(i);
+      const Vec3<Real> moments = inertia[i];
+      const bool sphere = moments[0] == moments[1] && moments[1] == moments[2];
+      if (kind != nullptr && kind->sites.size() == 1 && !sphere) refuse_one_site(s.name(i));
+    }
+  }
 
   /// Far from each other bodies go on Kepler orbits.
   ForceClaims claims() const {
@@ -67,6 +77,7 @@ struct GravityOfBodies {
 
  private:
   static void check_bodies(const Bodies* bodies);
+  [[noreturn]] static void refuse_one_site(const std::string& body);
 };
 
 namespace detail {  // compiled once, in gravity_of_bodies.cpp

@@ -4,7 +4,6 @@
 #include "numbers/cost_book.hpp"
 
 #include <algorithm>
-#include <optional>
 
 namespace noether {
 
@@ -12,8 +11,7 @@ namespace {
 
 /// What the force keeps from one evaluation to the next.
 template <class Real> struct Expanded {
-  std::optional<Sites<Real>> sites;
-  std::uint64_t members = 0;
+  KeptSites<Real> sites;
   VectorColumn<Real> a;
   Workspace workspace;
 };
@@ -34,15 +32,15 @@ template <class Real> void OnSites<Real>::check_pairs(const ParticleSystem<Real>
 
 template <class Real> void OnSites<Real>::add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
   auto& here = out.workspace().template get<Expanded<Real>>();
-  if (!here.sites || here.members != s.members()) {
-    here.sites.emplace(s);
-    here.members = s.members();
+  bool are_new = false;
+  {
+    const Spent spent("sites");
+    are_new = here.sites.follow(s);
+  }
+  if (are_new) {
     here.a = VectorColumn<Real>(here.sites->particles().size());
     here.workspace = Workspace();
     here.workspace.put(NeighborList(forces_.claims().range));
-  } else {
-    const Spent spent("sites");
-    here.sites->follow(s);
   }
   const ParticleSystem<Real>& sites = here.sites->particles();
   const Request wanted{.energy = out.wants_energy(), .virial = out.wants_virial()};

@@ -14,8 +14,8 @@ namespace noether {
 ///
 ///     f_i = sum_a f_a,   torque_i = sum_a R_i d_a x f_a,   W = sum_i X_i (x) f_i
 ///
-/// over the sites a of body i at X_i + R_i d_a. Any force of the house acts so; what it keeps, such as a neighbor list
-/// of the sites, is in the workspace.
+/// over the sites a of body i at X_i + R_i d_a. Any force can act this way; what it keeps, such as a neighbor list of
+/// the sites, is in the workspace.
 /// @cost that of the forces on the sites, and two passes over them
 template <class Real> class OnSites {
  public:
@@ -39,7 +39,6 @@ template <class Real> class OnSites {
   }
   template <class Number> void bind(const ParticleSystem<Number>& s) {
     if constexpr (std::is_same_v<Number, Real>) {
-      check_pairs(s);
       forces_.bind(Sites<Real>(s).particles());
     }
   }

@@ -106,11 +106,16 @@ template <class Real> AtomCount atoms_of(const ParticleSystem<Real>& s, const In
   const bool reduced = s.units().is_reduced();
   if (reduced ? !s.box().is_periodic() && s.topology() == nullptr : s.units().name != "molecular") return {};
   AtomCount count;
-  for (Index i = 0; i < s.size(); ++i) count.atoms += s.masses()[i] > Real(0) ? 1 : 0;
-  if (!reduced) {
-    count.freedom = 3 * count.atoms + turning_freedoms(s) - claims.constraints - (claims.keeps_momentum ? 3 : 0);
+  const auto all = s.masses().all().array();
+  const auto massive = static_cast<std::int64_t>((all > Real(0)).count());
+  count.atoms = massive;
+  for (Index i = 0; has_bodies(s) && i < s.size(); ++i) {  // the sites of bodies are atoms
+    const BodyKind* kind = s.bodies()->kind(i);
+    if (kind != nullptr && s.masses()[i] > Real(0)) count.atoms += kind->massive_sites() - 1;
   }
-  if (has_bodies(s)) count.atoms = s.bodies()->massive_sites(s.size());
+  if (!reduced) {
+    count.freedom = 3 * massive + turning_freedoms(s) - claims.constraints - (claims.keeps_momentum ? 3 : 0);
+  }
   return count;
 }
 

@@ -11,9 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
-#include <unordered_map>
 
 namespace noether {
 
@@ -32,33 +30,6 @@ struct Places {
 /// Whether the structure says which molecules there are: number 0 is none.
 bool names_molecules(const Topology& topology) {
   return std::any_of(topology.molecules.begin(), topology.molecules.end(), [](std::int64_t m) { return m != 0; });
-}
-
-/// Which molecule each of `n` particles belongs to, by the index of one of its particles: as the structure says, or by
-/// bonds.
-std::vector<Index> molecules_of(const Topology& topology, Index n) {
-  std::vector<Index> parent(static_cast<std::size_t>(n));
-  std::iota(parent.begin(), parent.end(), Index(0));
-  if (names_molecules(topology)) {
-    std::unordered_map<std::int64_t, Index> first;
-    for (Index i = 0; i < n; ++i) {
-      const std::int64_t molecule = topology.molecules[static_cast<std::size_t>(i)];
-      if (molecule != 0) parent[static_cast<std::size_t>(i)] = first.emplace(molecule, i).first->second;
-    }
-    return parent;
-  }
-  const auto root = [&](Index i) {
-    while (parent[static_cast<std::size_t>(i)] != i) {
-      Index& above = parent[static_cast<std::size_t>(i)];
-      i = above = parent[static_cast<std::size_t>(above)];
-    }
-    return i;
-  };
-  for (const BondedTerm<2>& bond : topology.bonds) {
-    parent[static_cast<std::size_t>(root(bond.particles[0]))] = root(bond.particles[1]);
-  }
-  for (Index i = 0; i < n; ++i) parent[static_cast<std::size_t>(i)] = root(i);
-  return parent;
 }
 
 /// How many of the pairs are of one molecule.
@@ -86,7 +57,8 @@ Places places_of(const std::vector<std::string>& types, bool intramolecular, con
   const auto a = static_cast<double>(places.first.size()), b = static_cast<double>(places.second.size());
   places.pairs = a * (places.same ? b - 1 : b);
   if (!intramolecular) {
-    places.molecules = molecules_of(*topology, n);
+    places.molecules =
+        names_molecules(*topology) ? molecules_by_number(*topology, n) : molecules_by_bonds(*topology, n);
     places.pairs -= pairs_of_one_molecule(places);
   }
   return places;

@@ -53,7 +53,9 @@ template <class Real> Index Spin::center_of(const ParticleSystem<Real>& s, Index
   for (Index i = 0; i < s.size(); ++i) {
     if (s.name(i) == about && i != of) return i;
   }
-  throw Error(fmt::format("about = \"{}\" is not another particle{}", about, did_you_mean(about, s.names())),
+  std::vector<std::string> others = s.names();
+  others.erase(others.begin() + of);
+  throw Error(fmt::format("about = \"{}\" is not another particle{}", about, did_you_mean(about, others)),
               {.key = "about"});
 }
 
@@ -79,10 +81,9 @@ template <class Real> void Spin::look_at_orbit(const ParticleSystem<Real>& s, In
   }
   const Real mu = Real(G ? *G : s.units().G) * (s.masses()[of] + s.masses()[center]);
   if (!(mu > Real(0))) return;
-  // From the pericenter, or from where a circle begins as its elements say.
   const OrbitalElements<Real> orbit = elements_from_state<Real>(x, v, mu);
+  if (!(orbit.e > Real(0)) || !(orbit.e < Real(1))) return;  // a circle has no pericenter to count from
   const Vec3<Real> toward = cross<Real>(v, normal) / mu - unit_vector<Real>(x);
-  if (!(orbit.e > Real(0)) || !(orbit.e < Real(1))) return;
   const Vec3<Real> first = unit_vector<Real>(toward), second = cross<Real>(n, first);
   const Vec3<Real> moments = s.template column<BodyInertia>()[of];
   int axis = 0;
@@ -102,10 +103,7 @@ template <class Real> void Spin::observe(const Snapshot<Real>& now) {
   const Quaternion<Real> q = s.template column<BodyOrientation>()[i];
   const Vec3<Real> spin = s.template column<BodySpin>()[i], moments = s.template column<BodyInertia>()[i];
   const Vec3<Real> in_body = spin_in_body<Real>(q, spin);
-  Vec3<Real> rate = Vec3<Real>::Zero();
-  for (int k = 0; k < 3; ++k) {
-    if (moments[k] > Real(0)) rate[k] = in_body[k] / moments[k];
-  }
+  const Vec3<Real> rate = rate_in_body<Real>(in_body, moments);
   value_ = in_doubles(spin);
   in_body_ = in_doubles(in_body);
   rate_ = in_doubles(rate);
@@ -131,16 +129,8 @@ std::vector<Series> Spin::series() const {
 }
 
 MonitorReport Spin::report() const {
-  MonitorReport report;
-  report.samples = samples_;
-  if (samples_ == 0) return report;
-  report.first = rates_.first();
-  report.last = rates_.last();
-  report.worst = rates_.worst();
-  report.rms = rates_.rms();
-  report.slope = rates_.slope();
-  if (const auto line = rates_.line()) report.slope_error = line->error;
-  report.slope_unit = slope_unit_;
+  MonitorReport report = report_of(rates_, slope_unit_);
+  if (report.samples == 0) return report;
   report.note = fmt::format("rate of '{}'; its orientation is a unit quaternion within {:.1e}", name_, worst_defect_);
   return report;
 }

@@ -1,6 +1,7 @@
 #include "monitors/turning.hpp"
 
 #include "engine/bodies.hpp"
+#include "monitors/series_report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,20 +12,6 @@ namespace {
 
 template <class Real> void expect_bodies(const ParticleSystem<Real>& s) {
   if (!has_bodies(s)) throw Error("there are no rigid bodies, so nothing turns; take this monitor out");
-}
-
-MonitorReport report_of_turns(const SeriesStatistics& values, const std::string& slope_unit) {
-  MonitorReport report;
-  report.samples = values.samples();
-  if (report.samples == 0) return report;
-  report.first = values.first();
-  report.last = values.last();
-  report.worst = values.worst();
-  report.rms = values.rms();
-  report.slope = values.slope();
-  if (const auto line = values.line()) report.slope_error = line->error;
-  report.slope_unit = slope_unit;
-  return report;
 }
 
 }  // namespace
@@ -43,7 +30,7 @@ template <class Real> void OrientationDefect::observe(const Snapshot<Real>& now)
 }
 
 MonitorReport OrientationDefect::report() const {
-  MonitorReport report = report_of_turns(values_, "");
+  MonitorReport report = report_of(values_, "");
   report.slope.reset();
   report.slope_error.reset();
   return report;
@@ -61,7 +48,7 @@ template <class Real> void TurningEnergy::observe(const Snapshot<Real>& now) {
   values_.add(now.time(), now_);
 }
 
-MonitorReport TurningEnergy::report() const { return report_of_turns(values_, slope_unit_); }
+MonitorReport TurningEnergy::report() const { return report_of(values_, slope_unit_); }
 
 template void OrientationDefect::check(const ParticleSystem<double>&) const;
 template void OrientationDefect::check(const ParticleSystem<Quad>&) const;

@@ -46,17 +46,8 @@ std::vector<Series> Variables::series() const {
 }
 
 MonitorReport Variables::report() const {
-  MonitorReport report;
-  report.samples = figures_.samples();
-  if (report.samples == 0) return report;
-  report.first = figures_.first();
-  report.last = figures_.last();
-  report.worst = figures_.worst();
-  report.rms = figures_.rms();
-  report.slope = figures_.slope();
-  if (const auto line = figures_.line()) report.slope_error = line->error;
-  report.slope_unit = slope_unit_;
-  report.note = fmt::format("{} ends at {:.9g}", shown_, figures_.last());
+  MonitorReport report = report_of(figures_, slope_unit_);
+  if (report.samples > 0) report.note = fmt::format("{} ends at {:.9g}", shown_, figures_.last());
   return report;
 }
 

@@ -98,10 +98,10 @@ template <class Real> Real carlson_rj(Real x, Real y, Real p) {
   const Real first = (x + y + z + Real(2) * p) / Real(5);
   Real delta = (p - x) * (p - y) * (p - z);
   const Real dx = first - x, dy = first - y, dz = first - z;
-  // The series of seven terms leaves (1/4)^6 of the largest difference in its last power, 3/22 of it.
+  // Terms up to degree 7: what is left out is of degree 8, below a quarter of the rounding unit.
   using std::pow;
-  Real reach = max(max(fabs(dx), fabs(dy)), max(fabs(dz), fabs(first - p))) * Real(1) /
-               pow(std::numeric_limits<Real>::epsilon() / Real(4), Real(1) / Real(8));
+  static const Real smallest = pow(std::numeric_limits<Real>::epsilon() / Real(4), Real(1) / Real(8));
+  Real reach = max(max(fabs(dx), fabs(dy)), max(fabs(dz), fabs(first - p))) / smallest;
   Real a = first, scale(1), sum(0);
   for (int k = 0; k < 64 && reach >= a; ++k) {
     const Real rx = sqrt(x), ry = sqrt(y), rz = sqrt(z), rp = sqrt(p);

@@ -24,10 +24,12 @@ template <class Real> Quaternion<Real> quaternion_product(const Quaternion<Real>
 template <class Real> Quaternion<Real> conjugate(const Quaternion<Real>& q) {
   return Quaternion<Real>(q[0], -q[1], -q[2], -q[3]);
 }
-/// |q|^2 - 1, summed from w to z.
-template <class Real> Real norm_defect(const Quaternion<Real>& q) {
-  return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - Real(1);
+/// |q|^2, summed from w to z.
+template <class Real> Real squared_length(const Quaternion<Real>& q) {
+  return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
 }
+/// |q|^2 - 1: of a unit quaternion its rounding.
+template <class Real> Real norm_defect(const Quaternion<Real>& q) { return squared_length(q) - Real(1); }
 /// q (3 - |q|^2)/2: of unit length to the square of its error, without a root.
 template <class Real> Quaternion<Real> renormalized(const Quaternion<Real>& q) {
   const Real factor = Real(1) - norm_defect(q) / Real(2);

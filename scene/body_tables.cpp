@@ -51,8 +51,6 @@ void check_mass(TableReader& reader, const std::string& name, double mass) {
                                   to_text(*reader.find("mass"))));
 }
 
-Vec3<double> column(const std::array<double, 3>& v) { return Vec3<double>(v[0], v[1], v[2]); }
-
 /// Whether a text is a number of days, however it spells them: "3 day", "3d", "3 days ".
 bool is_in_days(std::string_view text, const UnitSystem& units) {
   if (units.is_reduced()) return false;
@@ -254,7 +252,7 @@ class BodyTables {
     const std::optional<double> of_type = typed_.add(body, by_sites);
     const auto given = body.quantity("mass", "mass"), mass = given ? given : of_type;
     if (!mass && !by_sites) refuse_without_mass(body);
-    if (given) check_mass(body, name, *mass);
+    if (given && rigid == nullptr) check_mass(body, name, *mass);
     if (index_.count(name) != 0) {
       body.fail("name", fmt::format("two bodies are named '{}'; names must differ", name));
     }
@@ -356,6 +354,25 @@ class BodyTables {
     }
   }
 
+  /// What is wrong where a body is in a table of the other kind than `of`; nothing where it is not.
+  std::string of_the_other_kind(const std::string& name, const TableReader& of) const {
+    for (const char* key : {"body", "rigid_body"}) {
+      const SceneValue* tables = reader_.table().find(key);
+      const auto* list = tables != nullptr ? tables->get<SceneValue::Array>() : nullptr;
+      const auto is_it = [&](const SceneValue& table) { return &table == &of.table(); };
+      const auto has_it = [&](const SceneValue& table) {
+        const SceneValue* given = table.find("name");
+        const std::string* text = given != nullptr ? given->get<std::string>() : nullptr;
+        return text != nullptr && *text == name;
+      };
+      if (list == nullptr || std::any_of(list->begin(), list->end(), is_it)) continue;
+      if (std::any_of(list->begin(), list->end(), has_it)) {
+        return fmt::format("; put a [[particles.{}]] first in the file, and all tables of that kind come first", key);
+      }
+    }
+    return {};
+  }
+
   /// The bodies that `about` names: one by a text, several by a list.
   std::vector<Index> bodies_about(TableReader& body) const {
     const SceneValue* value = body.find("about");
@@ -365,8 +382,9 @@ class BodyTables {
       if (name == nullptr) body.wrong_kind(*value, "about", "the name of a body, or a list of names,");
       const auto found = index_.find(*name);
       if (found == index_.end()) {
+        const std::string elsewhere = of_the_other_kind(*name, body);
         body.fail("about", fmt::format("about = {}: there is no body '{}' above {}{}", to_text(*value), *name,
-                                       body.what(), did_you_mean(*name, s_.names())));
+                                       body.what(), elsewhere.empty() ? did_you_mean(*name, s_.names()) : elsewhere));
       }
       return found->second;
     };

@@ -200,6 +200,24 @@ class SceneCheck {
     }
   }
 
+  /// The line of the table of a particle; that of all particles where it has none, or cannot be told from others.
+  int line_of_body(const SceneValue& particles, Index of) const {
+    const SceneValue::Array* points = nullptr;
+    for (const char* key : {"body", "rigid_body"}) {
+      const SceneValue* tables = particles.find(key);
+      const auto* list = tables != nullptr ? tables->get<SceneValue::Array>() : nullptr;
+      if (list == nullptr) continue;
+      for (const SceneValue& table : *list) {
+        const SceneValue* name = table.find("name");
+        const std::string* text = name != nullptr ? name->get<std::string>() : nullptr;
+        if (text != nullptr && *text == scene_.particles.name(of)) return table.line;
+      }
+      if (key == std::string_view("body")) points = list;
+    }
+    const bool all_there = points != nullptr && std::ssize(*points) == scene_.particles.size();
+    return all_there ? (*points)[static_cast<std::size_t>(of)].line : particles.line;
+  }
+
   /// Refuses two bodies in one place, where the force between them is no number.
   void check_places() const {
     const auto pair = coincident_bodies(scene_.particles);
@@ -213,12 +231,8 @@ class SceneCheck {
     const Vec3<double> one = a[pair->first], other = a[pair->second];
     if (one.allFinite() && other.allFinite()) return;
     const SceneValue* particles = root_.find("particles");
-    const SceneValue* bodies = particles->find("body");
-    int line = particles->line;
-    if (bodies != nullptr)
-      line = std::get<SceneValue::Array>(bodies->data)[static_cast<std::size_t>(pair->second)].line;
     throw scene_error(
-        scene_.source, line, "particles", "",
+        scene_.source, line_of_body(*particles, pair->second), "particles", "",
         fmt::format("'{}' and '{}' are in the same place, where {}", s.name(pair->first), s.name(pair->second),
                     scene_.hamiltonian.is_keplerian() ? "their attraction is infinite; move one, or give gravity a "
                                                         "softening"

@@ -1,6 +1,7 @@
 #pragma once
 /// Fields of a part, read from a scene as the part's own description tells.
 
+#include "engine/columns.hpp"
 #include "engine/description.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/foreign_names.hpp"
@@ -32,6 +33,7 @@ struct PartInfo {
   std::string name, help, formula, source, quantities;
   std::vector<FieldInfo> fields = {};
   std::vector<std::pair<char, std::string>> letters = {};  ///< what it gives to words, and what their flows are
+  std::vector<ColumnInfo> columns = {};                    ///< keys that bodies have because of it
 
   /// What the flow of a letter is, in words; empty: it has no such letter.
   std::string meaning(char letter) const {
@@ -207,6 +209,7 @@ template <class T> PartInfo part_info() {
         [&](const auto& field) { detail::add_field(info, detail::FieldTexts::of(field), defaults.*(field.member)); });
   }
   for_each_letter<T>([&](const Letter& one) { info.letters.emplace_back(one.letter, std::string(one.text)); });
+  info.columns = columns_of<T>();
   return info;
 }
 

@@ -85,6 +85,12 @@ void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind,
                                     "= false",
                                     made.splitting.name, kind.info.name));
   }
+  if (!attracts && force.force.claims().on_bodies && !force.force.claims().kepler &&
+      reader.table().find("point_masses") != nullptr) {
+    reader.fail("point_masses", fmt::format("point_masses = false leaves out the attraction of the masses, which {} "
+                                            "does not have; take it out",
+                                            made.splitting.name));
+  }
   // Forces of several names that must not stand twice for one reason are one effect.
   const auto has_its_effect = [&](const SceneForce& other) {
     return std::any_of(parts.forces().begin(), parts.forces().end(), [&](const Parts::ForceKind& known) {

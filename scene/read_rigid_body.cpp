@@ -1,5 +1,6 @@
 #include "scene/read_rigid_body.hpp"
 
+#include "engine/given_orbit.hpp"
 #include "io/body_sites.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/fields.hpp"
@@ -13,8 +14,6 @@
 namespace noether {
 
 namespace {
-
-Vec3<double> column(const std::array<double, 3>& v) { return Vec3<double>(v[0], v[1], v[2]); }
 
 /// One `[[particles.rigid_body.site]]`.
 BodySite read_site(TableReader& reader, const std::vector<std::string>& types) {
@@ -84,7 +83,9 @@ RigidBody read_top(TableReader& body, const std::string& name, double mass) {
                           "{} out",
                           body.what(), other));
   }
-  for (const char* other : {"x", "v", "a", "P", "q", "about"}) {
+  std::vector<std::string_view> others = {"x", "v", "about"};
+  for (const OrbitKey& key : orbit_keys) others.push_back(key.name);
+  for (const std::string_view other : others) {
     if (!body.has(other)) continue;
     body.fail(other, fmt::format("{} has a fixed point, where it stays; take {} out", body.what(), other));
   }

@@ -111,6 +111,9 @@ class TableReader {
 SceneError scene_error(const SceneSource& source, int line, std::string key, std::string value,
                        const std::string& message);
 
+/// What `TableReader::vector` has read.
+inline Vec3<double> column(const std::array<double, 3>& v) { return Vec3<double>(v[0], v[1], v[2]); }
+
 /// The elements of a list of tables, `[[every]]`; none if the key is absent. @throws SceneError for anything else
 std::vector<const SceneValue*> tables_of(TableReader& reader, std::string_view key);
 

@@ -150,6 +150,11 @@ std::string to_text(const Comparison& c) {
   out += fmt::format("\ntruth: {}", c.truth.name);
   if (c.truth.error) out += fmt::format(", good to {:.1e}", *c.truth.error);
   if (!c.truth.note.empty()) out += fmt::format(" ({})", c.truth.note);
+  const auto turns = [](const Row& row) { return row.orientation_error_max.has_value(); };
+  if (c.position_measured && std::any_of(c.rows.begin(), c.rows.end(), turns)) {
+    out +=
+        "\nposition errors are the angle [rad] by which the worst body is turned from the truth, where that is larger";
+  }
   const char* kind = c.position_measured ? "position error" : "energy error";
   out += fmt::format("\n{:<32} {:>10} {:>9} {:>12} {:>10} {:>15}  {}\n", "method", "step/rtol", "time [s]",
                      "evaluations", "energy", kind, "fronts");

@@ -21,8 +21,7 @@ PositionError::PositionError(const ParticleSystem<double>& particles, bool about
   for (Index i = 0; i < particles.size(); ++i) masses_.emplace_back(particles.masses()[i]);
   const double total = sum_over<double>(particles.size(), [&](Index i) { return particles.masses()[i]; });
   if (!(total > 0)) about_center_ = false;
-  any_turns_ = only_turns_ = has_bodies(particles);
-  for (Index i = 0; i < particles.size(); ++i) only_turns_ = only_turns_ && particles.bodies()->is_held(i);
+  any_turns_ = has_bodies(particles);
 }
 
 double PositionError::turned_apart(const Vector<Quad>& y, const Vector<Quad>& truth) const {
@@ -91,7 +90,13 @@ double PositionError::size(const Vector<Quad>& y) const {
 }
 
 double PositionError::operator()(const Vector<Quad>& y, const Vector<Quad>& truth) const {
-  if (only_turns_) return turned_apart(y, truth);
+  const double distance = moved_apart(y, truth);
+  if (!any_turns_) return distance;
+  const double angle = turned_apart(y, truth);
+  return angle <= distance ? distance : angle;
+}
+
+double PositionError::moved_apart(const Vector<Quad>& y, const Vector<Quad>& truth) const {
   const std::vector<Quad> x = positions(y), exact = positions(truth);
   if (!sizes_.empty() && sizes_[0] > 0) {
     double squares = 0;

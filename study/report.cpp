@@ -279,9 +279,11 @@ class Page {
                                 c_.threads == 1 ? "thread" : "threads", c_.simd));
     line("date", c_.date);
     line("times", "medians of the runs alone, without monitors; errors come from runs of their own, of the same bits");
-    line("positions",
-         "norm(x - x*)/norm(x*) over all bodies about the centre of mass; bodies in an outer field where they stand, "
-         "relative to the rms of norm(x*)");
+    line(
+        "positions",
+        "norm(x - x*)/norm(x*) over all bodies about the centre of mass; bodies in an outer field where they stand, "
+        "relative to the rms of norm(x*); of rigid bodies the angle [rad] by which the worst is turned from the truth, "
+        "where that is larger");
     line("energy",
          "(E - E0)/max(|E0|, 1e-3 (T0 + |U0|)); where the equations change the energy themselves, E* of the reference "
          "stands for E0");

@@ -75,10 +75,7 @@ SplitRun run_along(const WideScene& wide, const Sampling& sampling, std::string_
 double distance(const SplitRun& a, const SplitRun& b, PositionError& error) {
   error.set_scale(a.y);
   double worst = 0;
-  for (std::size_t j = 0; j < a.y.size(); ++j) {
-    worst = std::max(worst, error(b.y[j], a.y[j]));
-    if (error.any_turns()) worst = std::max(worst, error.turned_apart(b.y[j], a.y[j]));
-  }
+  for (std::size_t j = 0; j < a.y.size(); ++j) worst = std::max(worst, error(b.y[j], a.y[j]));
   return worst;
 }
 

@@ -22,7 +22,7 @@ using namespace noether;
 ParticleSystem<double> leaning_top() {
   ParticleSystem<double> s(unit_system("reduced"));
   const double lean = 0.5;
-  add_body(s, top("top", 1, {1, 1, 0.5}, {0, 0, 1}),
+  add_body(s, top("top", 2, {1, 1, 0.5}, {0, 0, 0.5}),
            {.orientation = {std::cos(lean / 2), 0, std::sin(lean / 2), 0}, .angular_velocity = Vec3<double>(0, 0, 6)});
   return s;
 }

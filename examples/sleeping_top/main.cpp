@@ -35,9 +35,9 @@ struct Lean {
 int main() {
   ParticleSystem<double> s(unit_system("reduced"));
   const Quaternion<double> upright(std::cos(1e-6 / 2), std::sin(1e-6 / 2), 0, 0);
-  add_body(s, top("sleeper", 1, {1, 1, 0.5}, {0, 0, 1}),
+  add_body(s, top("sleeper", 2, {1, 1, 0.5}, {0, 0, 0.5}),
            {.orientation = upright, .angular_velocity = Vec3<double>(0, 0, 4.1)});
-  add_body(s, top("waker", 1, {1, 1, 0.5}, {0, 0, 1}),
+  add_body(s, top("waker", 2, {1, 1, 0.5}, {0, 0, 0.5}),
            {.x = {4, 0, 0}, .orientation = upright, .angular_velocity = Vec3<double>(0, 0, 3.9)});
   ForceField<double> on_tops, on_sites;
   on_sites.add(UniformField{{0, 0, -1}});

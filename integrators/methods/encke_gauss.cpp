@@ -288,7 +288,7 @@ std::optional<Failure> EnckeGauss::sweep(VectorField<double>& f, double t, doubl
       fmt::format("the departures from Kepler orbits do not converge with a step of {:.6g}; {}", h, ways_out)};
 }
 
-/// Sums over the stages, for the end. @return what perturbations that a polynomial of degree 7 does not follow end the
+/// Sums over the stages, for the end. @return a failure if a polynomial of degree 7 does not follow the
 /// run, unless they are too small to matter
 std::optional<Failure> EnckeGauss::end_stages(double h) {
   constexpr double negligible = 1e-14 * 1e-14, rough = rough_perturbations * rough_perturbations;

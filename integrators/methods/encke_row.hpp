@@ -14,7 +14,7 @@ struct alignas(64) EnckeBody {
   double functions[6][8] = {};                                ///< G_0 to G_5 at the stages
   double arc[8] = {};                                         ///< universal variables of the arcs
   double x0[3] = {}, v0[3] = {};      ///< at the beginning of the step, relative to the heaviest body
-  double inverse_size2 = 0;           ///< of p: 1 / |p|^2, the largest of the stages in the first sweep
+  double inverse_size2 = 0;           ///< of p: 1 over the largest |p|^2 of the stages, in the first sweep
   double gm = 0, mu = 0, mu_low = 0;  ///< G m; G (M + m), and what rounding takes from it where that is a perturbation
   double last_s = 0, last_r = 0, last_eta = 0;  ///< of the orbit at the last stage: s, |k|, k . k'
   unsigned missed = 0;  ///< a bit for each stage whose arc is too long, or was not found to rounding
@@ -23,8 +23,8 @@ struct alignas(64) EnckeBody {
 /// Two words of a number of eight bodies.
 using EightWords = double[2][8];
 
-/// Eight bodies about the heaviest one side by side, in two words. Lanes without a body repeat the first one, with a
-/// share of 0. Six numbers are x, y, z and the components of the velocity.
+/// Eight bodies about the heaviest one side by side, in two words. Lanes without a body repeat the first one of their
+/// row, with a share of 0. Six numbers are x, y, z and the components of the velocity.
 struct alignas(64) EnckeEight {
   EightWords mu = {}, share = {};                           ///< G (M + m), m / (sum of all masses)
   EightWords at[6] = {};                                    ///< where the particles are

@@ -26,7 +26,7 @@ struct EnckeKernels {
   double (*attract)(EnckeBody* bodies, std::ptrdiff_t n);
   /// Perturbations as a polynomial has them in the next step, from those at hand, and rates. @param w  as `a`
   void (*predict)(EnckeBody* bodies, std::ptrdiff_t n, const double* w);
-  /// The fresh perturbations become those at hand, and the rates follow. @param first  sweep of the step
+  /// The fresh perturbations become those at hand, and the rates follow. @param first  whether this is the first sweep
   EnckeChange (*take)(EnckeBody* bodies, std::ptrdiff_t n, bool first);
 };
 

@@ -3,6 +3,7 @@
 #include "engine/bodies.hpp"
 #include "engine/make_rigid.hpp"
 #include "engine/sites.hpp"
+#include "engine/topology.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -80,6 +81,36 @@ TEST_CASE("a body begins where and as it is told", "[engine][bodies]") {
   CHECK(copy.bodies() == s.bodies());
 }
 
+TEST_CASE("orientations have any length but 0, a top any moments that its place allows", "[engine][bodies]") {
+  for (const double length : {1e-300, 1e-9, 1e-3, 1., 7., 1e300}) {
+    ParticleSystem<double> s(unit_system("reduced"));
+    add_body(s, body_of_inertia("a", 1, {1, 2, 2}), {.orientation = length * Quaternion<double>(1, 2, 0, 0)});
+    const Quaternion<double> q = std::as_const(s).column<BodyOrientation>()[0];
+    CHECK((q - Quaternion<double>(1, 2, 0, 0) / std::sqrt(5)).norm() < 3e-16);
+  }
+  CHECK(top("ball", 2, {1, 1, 0.5}, {0, 0, 0.5}).warning.empty());
+  CHECK(top("about its centre", 1, {1, 1, 0.5}, {0, 0, 1}).warning.find("no mass with its centre at [0, 0, 1]") == 0);
+}
+
+TEST_CASE("kinds of many bodies are collected before the particles get them", "[engine][bodies]") {
+  ParticleSystem<double> s(unit_system("reduced"));
+  Bodies bodies;
+  for (int k = 0; k < 3; ++k) add_body(s, bodies, ellipsoid(std::to_string(k), 1, {1, 2, 3}), {});
+  CHECK(s.bodies() == nullptr);
+  s.set_bodies(std::make_shared<const Bodies>(bodies));
+  CHECK(s.bodies()->kinds.size() == 1);
+  CHECK(s.bodies()->kind_of == std::vector<int>{0, 0, 0});
+  CHECK(BodyKind{.sites = {site(1, {1, 0, 0}), site(0, {0, 1, 0})}}.massive_sites() == 1);
+}
+
+TEST_CASE("molecules are those of bonds, or of numbers", "[engine][topology]") {
+  Topology t;
+  t.molecules = {3, 3, 0, 3, 0, 7};
+  t.bonds = {{{4, 2}, 0}, {{5, 4}, 0}};
+  CHECK(molecules_by_number(t, 6) == std::vector<Index>{0, 0, 2, 0, 4, 5});
+  CHECK(molecules_by_bonds(t, 6) == std::vector<Index>{0, 1, 2, 3, 2, 2});
+}
+
 TEST_CASE("sites stand where their body does, wrapped as particles are", "[engine][bodies]") {
   ParticleSystem<double> s(unit_system("reduced"));
   add_body(s, body_of_sites("body", {site(1, {1, 0, 0}), site(1, {-1, 0, 0}), site(1, {0, 1, 0}), site(1, {0, -1, 0})}),
@@ -122,7 +153,7 @@ TEST_CASE("bodies that cannot be are refused, and odd ones told", "[engine][bodi
         }) == "body 'a' has 1 site; two or more are expected, or its moments of inertia");
   const std::vector<BodySite> line = {site(1, {0, 0, 0}), site(1, {1, 2, 3})};
   CHECK(refusal([&] { body_of_sites("a", line); }) ==
-        "the sites of body 'a' are in a line, so it has two moments of inertia alone; give linear = true if that is "
+        "the sites of body 'a' are in a line, so it has only two moments of inertia; give linear = true if that is "
         "meant");
   const RigidBody rod = body_of_sites("a", line, true);
   CHECK(turning_freedoms<double>(rod.inertia) == 2);

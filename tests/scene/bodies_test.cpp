@@ -237,6 +237,10 @@ TEST_CASE("what elements cannot be about is refused", "[scene][bodies][messages]
         "scene.toml:10: about = \"a\": there is no body 'a' above body 'C'; did you mean 'A'?");
   CHECK(reduced_scene(a + body_table("C", "mass = 0\na = 1\nabout = 'C'\n")).refusal() ==
         "scene.toml:10: about = \"C\": there is no body 'C' above body 'C'; expected one of: A");
+  const std::string rigid = "[[particles.rigid_body]]\nname = 'R'\nmass = 1\ninertia = [1, 1, 1]\nabout = 'A'\na = 2\n";
+  CHECK(reduced_scene(rigid + a).refusal() ==
+        "scene.toml:7: about = \"A\": there is no body 'A' above body 'R'; put a [[particles.body]] first in the file, "
+        "and all tables of that kind come first");
   CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = ['A', 'A']\n")).refusal() ==
         "scene.toml:14: about = [\"A\", \"A\"] is not a valid barycenter; different bodies are expected");
   CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = 3\n")).refusal() ==

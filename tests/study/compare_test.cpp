@@ -531,4 +531,21 @@ TEST_CASE("orientations are compared with a truth of 113 bits, of one body too",
   for (const Row& row : c.rows) CHECK(row.position_error_max == row.orientation_error_max);  // it stands still
 }
 
+TEST_CASE("a free body that is turned wrong has an error, though its centre stands still", "[study]") {
+  const Scene free = read_scene(
+      "units = 'reduced'\n[[particles.rigid_body]]\nname = 'racket'\nmass = 1\ninertia = [1, 2, 3]\n"
+      "angular_velocity = [0.01, 2, 0]\n[hamiltonian]\ntype = 'kinetic_potential'\nrotor = 'axes'\n"
+      "[integrator]\nmethod = 'verlet'\nstep = 0.05\nuntil = 10\n",
+      "free.toml");
+  CompareOptions options;
+  options.methods = {"verlet"};
+  options.steps = {0.05, 0.025};
+  options.repeats = 1;
+  const Comparison c = compare(free, options);
+  REQUIRE(c.rows.size() == 2);
+  for (const Row& row : c.rows) CHECK(row.position_error_max.value() > 1e-5);
+  CHECK(std::abs(std::log2(c.rows[0].position_error_max.value() / c.rows[1].position_error_max.value()) - 2) < 0.3);
+  CHECK(to_text(c).find("by which the worst body is turned from the truth") != std::string::npos);
+}
+
 }  // namespace noether::test
