@@ -10,6 +10,7 @@
 #include "scene/parts.hpp"
 #include "scene/read_builder.hpp"
 #include "study/methods_page.hpp"
+#include "study/turning_traits.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -186,7 +187,7 @@ void print_measured(bool json) {
   std::vector<MeasuredMethod> methods_measured;
   for (const KnownMethod& known : all_known_methods()) methods_measured.push_back(measured_method(known));
   if (!json) {
-    fmt::print("{}", methods_page(methods_measured));
+    fmt::print("{}{}", methods_page(methods_measured), turning_section(measured_turns()));
     return;
   }
   std::vector<Json> items;

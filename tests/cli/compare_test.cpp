@@ -55,18 +55,18 @@ TEST_CASE("advise prints lines ready to paste", "[cli][advise]") {
 }
 
 TEST_CASE("compare and advise begin at the minimum that a scene asks for", "[cli][compare][advise]") {
-  // From 1 it falls for 20; at its minimum a step too long for the swing has no error.
+  // Downhill from 1, where one evaluation is not enough.
   const std::string minimum = "[minimize]\nmax_force = 1e-9\n";
   const SceneFolder rests(spring + minimum), lost(spring + minimum + "steps = 1\n");
-  for (const std::string& command :
-       {std::string("compare scene.toml --methods verlet --steps 3 --until 300 --repeat 1"),
-        std::string("advise scene.toml --error 1e-6 --methods verlet")}) {
+  for (const std::string& command : {std::string("compare scene.toml --methods verlet --steps 0.1 --repeat 1"),
+                                     std::string("advise scene.toml --error 1e-6 --methods verlet")}) {
     const ProcessResult found = noether(lost, command);
     INFO(command << found.out << found.err);
     CHECK(found.exit_code == 2);
     CHECK(has(found.err, "none is found"));
   }
-  CHECK_FALSE(has(output(rests, "compare scene.toml --methods verlet --steps 3 --until 300 --repeat 1"), "diverged"));
+  CHECK(has(output(rests, "compare scene.toml --methods verlet --steps 0.1 --repeat 1"), "1 method, 1 run"));
+  CHECK_FALSE(output(rests, "advise scene.toml --error 1e-6 --methods verlet").empty());
 }
 
 TEST_CASE("wrong requests to compare and advise are told in one line", "[cli][compare][wrong]") {

@@ -30,7 +30,8 @@ Scene rocks(const std::string& rotor) {
 
 TEST_CASE("the fastest turn is known, and a rule of steps where turns are not exact", "[stability][bodies]") {
   for (const std::string rotor : {"exact", "axes"}) {
-    const Stability found = find_stability(rocks(rotor), {.methods = {"verlet"}, .confirm_steps = 1000});
+    const Stability found =
+        find_stability(rocks(rotor), {.methods = {"verlet"}, .confirm_steps = 1000, .row_budget = 0.5});
     REQUIRE(found.turning);
     CHECK(std::abs(found.turning->period - 2 * std::acos(-1.0) / 10) < 1e-14);
     CHECK(found.turning->body == "fast");
