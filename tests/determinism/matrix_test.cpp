@@ -1,17 +1,20 @@
 /// Threads x cadence x program or scene x restart, for schemes, Hamiltonians and forces, at every SIMD level.
 
+#include "engine/bodies.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/linear_drag.hpp"
 #include "forces/oblateness.hpp"
+#include "forces/on_sites.hpp"
 #include "forces/sum.hpp"
 #include "integrators/all_schemes.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/rotating.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/digest.hpp"
 #include "monitors/monitors.hpp"
@@ -29,6 +32,8 @@
 #include <fmt/format.h>
 
 #include <functional>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace noether {
@@ -242,6 +247,47 @@ std::vector<Twin> turning_twins() {
            .method = "yoshida_4"}};
 }
 
+/// A liquid of bent bodies of three sites with atoms between them, by both rotors.
+std::vector<Twin> rigid_twins() {
+  const ParticleSystem<double> atoms = test::liquid(5, 0.3, 1, 0.1);
+  const RigidBody bent = body_of_sites("bent", {{.place = {0, 0, 0}, .mass = 1},
+                                                {.place = {0.3, 0.1, 0}, .mass = 0.5},
+                                                {.place = {-0.2, 0.3, 0}, .mass = 0.25}});
+  ParticleSystem<double> s(atoms.units());
+  Bodies bodies;
+  for (Index i = 0; i < atoms.size(); ++i) {
+    const Vec3<double> x = atoms.positions()[i], v = atoms.velocities()[i];
+    if (i % 11 == 5) {
+      s.add("", 1, x, v);
+      continue;
+    }
+    add_body(s, bodies, bent,
+             {.x = x, .v = v, .orientation = {1, v[1], v[2], v[0]}, .spin = Vec3<double>(0.1 * v[2], 0.2 * v[0], 0.1)});
+  }
+  s.set_bodies(std::make_shared<const Bodies>(std::move(bodies)));
+  s.set_box(atoms.box());
+  std::vector<Twin> twins;
+  for (const Rotor rotor : {Rotor::exact, Rotor::axes}) {
+    ForceField<double> pairs, on_bodies;
+    pairs.add(LennardJonesForce{.cutoff = 2.2, .epsilon = 1.0, .sigma = 0.8});
+    on_bodies.add(OnSites<double>(pairs));
+    const std::string name = rotor == Rotor::exact ? "exact" : "axes";
+    twins.push_back({.name = "a liquid of bodies, rotor " + name,
+                     .bodies = s,
+                     .program = compose(Rotating<AnyHamiltonian<double>>(
+                                            AnyHamiltonian<double>(KineticPotential(on_bodies)), {.rotor = rotor}),
+                                        schemes::yoshida_4),
+                     .step = 0.01,
+                     .hamiltonian = "[hamiltonian]\ntype='kinetic_potential'\nrotor='" + name +
+                                    "'\n[[hamiltonian.force]]\ntype='lennard_jones'\ncutoff=2.2\nepsilon=1\n"
+                                    "sigma=0.8\n",
+                     .method = "yoshida_4",
+                     .place = "[particles]\nbox=[9,9,9]\n[[particles.rigid_body]]\nname='replaced too'\nmass=1\n"
+                              "inertia=[1,1,1]\nx=[4,0,0]\nv=[0,0,0]\n"});
+  }
+  return twins;
+}
+
 /// Methods on states of two words, with tracers and a force beside gravity.
 std::vector<Twin> two_word_twins() {
   const Gravity gravity{.G = test::outer_G};
@@ -264,8 +310,8 @@ std::vector<Twin> two_word_twins() {
 
 void check_all_twins(std::size_t stride) {
   for (const auto& twins :
-       {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), turning_twins(), two_word_twins(),
-        wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
+       {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), turning_twins(), rigid_twins(),
+        two_word_twins(), wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
         wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);
   }
