@@ -41,18 +41,20 @@ struct Case {
   Index constraints() const { return solver.set().equations(); }
   /// Runs a slice: rounds of some steps, from the same start each time, since without forces angles become what no
   /// molecule has.
+  /// @param by_clock  whether the clock tells, not the time of this thread
   /// @return ns for each constraint and step
-  double slice() {
+  double slice(bool by_clock = false) {
     double seconds = 0;
     for (std::int64_t round = 0; round < rounds; ++round) {
       ParticleSystem<double> s = particles;
       ConstraintSolver<double> own = solver;
-      seconds += bench::processor_seconds_of([&] {
+      const auto work = [&] {
         for (int k = 0; k < steps_of_round; ++k) {
           own.advance_positions(s, step);
           own.project_velocities(s, step);
         }
-      });
+      };
+      seconds += by_clock ? bench::seconds_of(work) : bench::processor_seconds_of(work);
       if (own.failure()) throw Error(name + ": the benchmark's run failed: " + own.failure()->message);
       violation = std::max(violation, own.set().worst(s).residual);
       iterations = static_cast<double>(own.iterations()) / steps_of_round;
@@ -210,10 +212,32 @@ void add_contractions(const bench::Rows& rows, const std::string& molecule, cons
   }
 }
 
+/// How many times as quick threads are as one, by the clock, by the number of molecules.
+void add_threads(const bench::Rows& rows, int threads) {
+  const std::vector<std::pair<std::string, Molecule>> molecules{
+      {"water", water()}, {"decane_united", chain(9)}, {"decane", decane()}};
+  for (const auto& [name, molecule] : molecules) {
+    for (const Index copies : {512, 4096, 32'768}) {
+      Case one = made(name + "/newton", molecule, copies, {});
+      one.slice();
+      std::vector<double> times;
+      for (int k = 0; k < 7; ++k) {
+        set_thread_count(1);
+        const double alone = one.slice(true);
+        set_thread_count(threads);
+        times.push_back(alone / one.slice(true));
+      }
+      set_thread_count(1);
+      rows.add(one.name, "times_as_quick", bench::Measured(times), "1", one.constraints());
+    }
+  }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
   const bench::Rows rows("constraints", count, arguments);
+  const int threads = thread_count();
   set_thread_count(1);
   std::vector<Case> cases;
   for (const Index bonds : {100, 10'000, 10}) {
@@ -256,4 +280,5 @@ int main(int count, char** arguments) {
   }
   for (const auto& [name, molecule] : molecules) add_contractions(rows, name, cases);
   rows.add("chain10000_over_100", "cost_scaling", bench::Measured(scaling), "1", 10'000);
+  if (threads > 1) add_threads(rows, threads);
 }

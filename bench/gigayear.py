@@ -81,7 +81,7 @@ METHODS = (
     Method("plain Wisdom-Holman", "verlet_aba", 200),
     Method("ABA(10,6,4)", "aba_10_6_4", 400, keys={"compensated": True}),
     Method("lazy kernel, corrector 17", "verlet_aba", 100, keys={"corrector": 17, "kernel": "lazy"}),
-    Method("Gauss", "gauss_8", 360, "kinetic_potential", {"adaptive": False}, minutes=20),
+    Method("Gauss", "gauss_8", 433, "kinetic_potential", {"adaptive": False}, minutes=20),
     Method("exact", "encke_gauss_8", 360, "kinetic_potential", years=1e7, starts=4, minutes=60, error=1e-13),
 )
 

@@ -1,7 +1,7 @@
 /// What turns cost: free bodies, the work of a rigid molecule in a step beside forces, and a whole step of rigid water
 /// beside that of the same water by constraints, with the error of each.
 ///
-/// Parts: free, molecule, water. Processor times on one thread, medians.
+/// Parts: free, molecule, water, threads. Processor times on one thread, medians; of threads by the clock.
 
 #include "bench/support.hpp"
 #include "constraints/structure_constraints.hpp"
@@ -89,6 +89,14 @@ ForceField<double> forces() {
   return all;
 }
 
+/// Near a minimum, so that nothing is thrown.
+ParticleSystem<double> settled_water(Index molecules) {
+  ParticleSystem<double> atoms = water(molecules);
+  static_cast<void>(
+      minimize(atoms, AnyForce<double>(forces()), rigid_molecules(atoms), {.max_force = 400 * kJ_per_mol / nm}));
+  return atoms;
+}
+
 /// us a molecule and whole step, and the largest energy error of 500 steps more.
 void add_water(const bench::Rows& rows, const std::string& name, Simulation<double> sim, Index molecules) {
   if (!sim.run(100).ok()) std::exit(1);
@@ -105,9 +113,8 @@ void add_water(const bench::Rows& rows, const std::string& name, Simulation<doub
 }
 
 void compare_water(const bench::Rows& rows, Index molecules) {
-  ParticleSystem<double> atoms = water(molecules);
+  const ParticleSystem<double> atoms = settled_water(molecules);
   const ConstraintSet rigid = rigid_molecules(atoms);
-  static_cast<void>(minimize(atoms, AnyForce<double>(forces()), rigid, {.max_force = 400 * kJ_per_mol / nm}));
   const ParticleSystem<double> bodies = make_rigid(atoms);
   ForceField<double> on_bodies;
   on_bodies.add(OnSites<double>(forces()));
@@ -123,10 +130,38 @@ void compare_water(const bench::Rows& rows, Index molecules) {
             Simulation(atoms, compose(KineticPotential(forces(), rigid), schemes::verlet), 2 * fs), molecules);
 }
 
+/// How many times as quick threads are as one, by the clock: of free turns, and of whole steps of water.
+void add_threads(const bench::Rows& rows, int threads) {
+  ForceField<double> on_bodies;
+  on_bodies.add(OnSites<double>(forces()));
+  const AnyHamiltonian<double> of_water(KineticPotential{on_bodies}), free(KineticPotential(ForceField<double>{}));
+  const auto by_axes = [](const AnyHamiltonian<double>& h, ParticleSystem<double> s, double step) {
+    return Simulation(std::move(s),
+                      compose(Rotating<AnyHamiltonian<double>>(h, {.rotor = Rotor::axes}), schemes::verlet), step);
+  };
+  const auto add = [&](const std::string& name, Simulation<double> sim, std::int64_t steps, Index n) {
+    const auto run = [&] {
+      if (!sim.run(steps).ok()) std::exit(1);
+    };
+    std::vector<double> times;
+    for (int k = 0; k < 7; ++k) {
+      set_thread_count(1);
+      const double alone = bench::seconds_of(run);
+      set_thread_count(threads);
+      times.push_back(alone / bench::seconds_of(run));
+    }
+    rows.add(name, "times_as_quick", bench::Measured(times), "1", n);
+    set_thread_count(1);
+  };
+  add("free axes", by_axes(free, free_bodies(100'000), 0.01), 20, 100'000);
+  add("water by axes", by_axes(of_water, make_rigid(settled_water(512)), 2 * fs), 100, 512);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
-  const bench::Rows rows("rigid", count, arguments, {"free", "molecule", "water"});
+  const bench::Rows rows("rigid", count, arguments, {"free", "molecule", "water", "threads"});
+  const int threads = thread_count();
   set_thread_count(1);
   if (rows.wants("free")) {
     for (const Index n : {1, 1000}) {
@@ -136,4 +171,5 @@ int main(int count, char** arguments) {
   }
   if (rows.wants("molecule")) add_molecule(rows, 512);
   if (rows.wants("water")) compare_water(rows, 512);
+  if (rows.wants("threads") && threads > 1) add_threads(rows, threads);
 }
