@@ -35,6 +35,7 @@ case $target in
     build/fuzz/tests/fuzz/write_scenes "$scratch/scenes"
     seeds+=(tests/scenes/good/*.toml "$scratch"/scenes/bad/*.toml)
     ;;
+  body_sites) seeds+=(tests/scenes/good/*.csv) ;;
   csv_bodies) seeds+=(tests/scenes/good/*.csv tests/scenes/bad/*.csv) ;;
   structure) seeds+=(tests/data/lammps/*.data) ;;
   horizons) seeds+=(tests/data/horizons/*.txt) longest=8192 ;;

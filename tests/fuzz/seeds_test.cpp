@@ -29,6 +29,10 @@ TEST_CASE("what once broke the reader of tables of bodies does not", "[fuzz]") {
   take_all("data/horizons", take_bodies);
 }
 
+TEST_CASE("what once broke the reader of sites of bodies does not", "[fuzz]") {
+  take_all("fuzz/seeds/body_sites", take_body_sites);
+}
+
 TEST_CASE("what once broke the readers of structures does not", "[fuzz]") {
   take_all("fuzz/seeds/structure", take_structure);
   take_all("data/lammps", take_structure);

@@ -4,9 +4,11 @@
 /// An input may be taken or refused by an exception below noether::Error; all else is a finding: a broken property, an
 /// exception of another kind, a crash, a report of a sanitizer. A LogicError is one too: no file breaks a contract.
 
+#include "engine/bodies.hpp"
 #include "engine/saved_state.hpp"
 #include "engine/snapshot.hpp"
 #include "io/bodies.hpp"
+#include "io/body_sites.hpp"
 #include "io/checkpoint.hpp"
 #include "io/digest.hpp"
 #include "io/files.hpp"
@@ -25,6 +27,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -125,6 +128,27 @@ inline void take_bodies(std::string_view table) {
   for (const char* system : {"solar", "si", "reduced"}) {
     ParticleSystem<double> bodies;
     if (accepted([&] { bodies = io::read_bodies(file, {.units = &unit_system(system)}); })) check_bodies(bodies);
+  }
+}
+
+// ---- sites of rigid bodies -----------------------------------------------------------------------------------------
+
+/// Sites in a table, in unit systems with units and without, with types and without: what becomes a body of them has a
+/// mass, moments and axes.
+inline void take_body_sites(std::string_view table) {
+  const std::filesystem::path file = as_file("sites.csv", table);
+  for (const char* system : {"molecular", "reduced"}) {
+    for (const std::vector<std::string>& types : {std::vector<std::string>{}, std::vector<std::string>{"O", "H"}}) {
+      std::vector<BodySite> sites;
+      if (!accepted([&] { sites = io::read_body_sites(file, unit_system(system), types); })) continue;
+      RigidBody body;
+      if (!accepted([&] { body = body_of_sites("body", sites, std::nullopt); })) continue;
+      require(body.mass > 0 && std::isfinite(body.mass), "a body has no mass");
+      require(body.sites.size() == sites.size(), "a body has other sites");
+      for (int k = 0; k < 3; ++k)
+        require(body.inertia[k] >= 0 && std::isfinite(body.inertia[k]), "a moment of inertia is no number from 0 on");
+      require(std::abs(norm_defect(body.axes)) < 1e-12, "the axes of a body are no rotation");
+    }
   }
 }
 
