@@ -142,12 +142,13 @@ template <class Real> Sites<Real>::Sites(const ParticleSystem<Real>& s, bool pai
 
 template <class Real> void Sites<Real>::follow(const ParticleSystem<Real>& s) {
   VectorColumn<Real>& to = particles_.positions();
+  const auto& orientation = s.template column<BodyOrientation>();  // here, where it may throw
   for_blocks(s.size(), [&](Index begin, Index end) {
     const auto behind =
         std::upper_bound(runs_.begin(), runs_.end(), begin, [](Index i, const Run& run) { return i < run.end; });
     for (auto run = behind; run != runs_.end() && run->begin < end; ++run) {
       const Index from = std::max(begin, run->begin), till = std::min(end, run->end);
-      place(*run, from, till, s, to);
+      place(*run, from, till, s, orientation, to);
       for (int k = 0; s.box().is_periodic() && k < 3; ++k) {  // those of their bodies, before they are wrapped
         repeat(s.images().component(k) + from, till - from, first(from + 1) - first(from),
                particles_.images().component(k) + first(from));
@@ -159,13 +160,13 @@ template <class Real> void Sites<Real>::follow(const ParticleSystem<Real>& s) {
 }
 
 template <class Real>
-void Sites<Real>::place(const Run& run, Index begin, Index end, const ParticleSystem<Real>& s, VectorColumn<Real>& to) {
+void Sites<Real>::place(const Run& run, Index begin, Index end, const ParticleSystem<Real>& s,
+                        const RowColumn<Real, 4>& orientation, VectorColumn<Real>& to) {
   const auto& x = s.positions();
   if (run.kind == nullptr) {
     for (Index i = begin; i < end; ++i) to.set(first(i), x[i]);
     return;
   }
-  const auto& orientation = s.template column<BodyOrientation>();
   const auto sites = static_cast<Index>(run.kind->sites.size());
   if constexpr (std::is_same_v<Real, double>) {
     const SiteColumns columns{

@@ -42,7 +42,8 @@ template <class Real> class Sites {
     std::vector<double> places;  ///< of the sites of a body, three numbers each
   };
 
-  void place(const Run& run, Index begin, Index end, const ParticleSystem<Real>& s, VectorColumn<Real>& to);
+  void place(const Run& run, Index begin, Index end, const ParticleSystem<Real>& s,
+             const RowColumn<Real, 4>& orientation, VectorColumn<Real>& to);
 
   ParticleSystem<Real> particles_;
   std::shared_ptr<const Bodies> bodies_;

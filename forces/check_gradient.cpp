@@ -42,7 +42,7 @@ template <class Real> struct SlopeError {
     const Real difference = abs(given + slope);
     finite = finite && isfinite(difference);  // std::max would drop a NaN
     worst = std::max(worst, Real(difference - noise));
-    largest = std::max(largest, Real(abs(given)));
+    largest = std::max({largest, Real(abs(given)), isfinite(slope) ? Real(abs(slope)) : Real(0)});
   }
   double relative() const {
     if (!finite) return std::numeric_limits<double>::infinity();

@@ -15,6 +15,8 @@ namespace {
 void Tides::check() const { check_constant_of_gravitation(G); }
 
 template <class Real> void Tides::check(const ParticleSystem<Real>& s) const {
+  if (has_bodies(s) && s.bodies()->any_held())
+    throw Error("tides move bodies, but a fixed point holds one of them; take tides out, or the fixed point");
   bool any = false;
   for (Index i = 0; s.template has<LoveNumber>() && i < s.size(); ++i) {
     const Real love = s.template column<LoveNumber>()[i];
@@ -24,12 +26,16 @@ template <class Real> void Tides::check(const ParticleSystem<Real>& s) const {
       throw Error(
           fmt::format("the love_number of '{}' is {}; 0 or more is expected", s.name(i), static_cast<double>(love)));
     }
-    const bool turns = has_bodies(s) && turning_freedoms<Real>(s.template column<BodyInertia>()[i]) > 0;
-    if (!turns) refuse_tides(s.name(i), "no moments of inertia; tides turn bodies, so make it a rigid body");
-    if (s.bodies()->is_held(i)) refuse_tides(s.name(i), "a fixed point holds it; tides move bodies");
-    const auto positive = [&](const auto& column) { return column[i] > Real(0); };
-    if (!s.template has<BodyRadius>() || !positive(s.template column<BodyRadius>()))
-      refuse_tides(s.name(i), "no radius; give one above 0");
+    const int turns = has_bodies(s) ? turning_freedoms<Real>(s.template column<BodyInertia>()[i]) : 0;
+    if (turns == 0) refuse_tides(s.name(i), "no moments of inertia; tides turn bodies, so make it a rigid body");
+    if (turns < 3)
+      refuse_tides(s.name(i), "is a line, about which tides would turn it; give it three moments of inertia");
+    const Real radius = s.template has<BodyRadius>() ? s.template column<BodyRadius>()[i] : Real(0);
+    if (radius == Real(0)) refuse_tides(s.name(i), "no radius; give one above 0");
+    if (!(radius > Real(0))) {
+      throw Error(fmt::format("the radius of '{}' is {}; a length above 0 is expected", s.name(i),
+                              static_cast<double>(radius)));
+    }
     if (s.template has<TideLag>() && !(s.template column<TideLag>()[i] >= Real(0))) {
       throw Error(fmt::format("the tide_lag of '{}' is {}; 0 or more is expected", s.name(i),
                               static_cast<double>(s.template column<TideLag>()[i])));

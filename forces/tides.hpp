@@ -65,7 +65,8 @@ struct Tides {
 
   /// @throws Error  for a G that is not above 0
   void check() const;
-  /// @throws Error  where no body has tides, for one without radius or moments, and for numbers below 0
+  /// @throws Error  where no body has tides, for one without radius or three moments, for numbers below 0, and where a
+  /// fixed point holds a body
   template <class Real> void check(const ParticleSystem<Real>& s) const;
 
   /// Accelerations and torques at the velocities and spins that the particles have.

@@ -54,7 +54,7 @@ Turned<Real> turn_by_axes(const Quaternion<Real>& q, const Vec3<Real>& spin, con
 
 /// The same of the bodies [begin, end), `begin` a multiple of 8, with the same bits; a point stays.
 /// @param action  of each turn, shape (n), n rounded up to a multiple of 8
-/// @cost of doubles in lanes some 15 ns a body where none turns by more than half a right angle about an axis
+/// @cost of doubles in lanes some 15 ns a body where none turns by more than a right angle about an axis at a time
 template <class Real>
 void turn_all_by_axes(RowColumn<Real, 4>& orientation, const VectorColumn<Real>& spin,
                       const VectorColumn<Real>& inertia, const Real& h, const AxisOrder& order, Index begin, Index end,

@@ -17,7 +17,7 @@ struct TurningColumns {
 
 struct FreeRotorKernels {
   /// Turns the bodies of [from, to) axis by axis, as `turn_by_axes` does and with its bits, eight at a time from a
-  /// multiple of eight on, until it meets eight one of which turns by more than a quarter of pi about one axis, or
+  /// multiple of eight on, until it meets eight one of which turns by more than a right angle about one axis, or
   /// not by a number. Returns their first, or `to`.
   /// @param order  three axes: the first two for half a step each, the third for a whole one, and back
   std::ptrdiff_t (*by_axes)(const TurningColumns& bodies, double h, const int* order, std::ptrdiff_t from,

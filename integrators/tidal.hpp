@@ -40,7 +40,7 @@ template <SplitHamiltonian H> class Tidal : public Wrapped<H> {
   }
   /// @throws Error  for bodies that cannot have tides, and where none has
   void bind(ParticleSystem<real>& s) {
-    tides_.check(s);
+    check_force(tides_, s);
     Wrapped<H>::bind(s);
     before_ = middle_ = s;
     acceleration_ = torque_ = VectorColumn<real>(s.size());
@@ -91,25 +91,24 @@ template <SplitHamiltonian H> class Tidal : public Wrapped<H> {
   }
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "tides/", tides_);
+    failure_.reset();
     detail::load_any(saved, prefix, this->hamiltonian_);
   }
 
  private:
   /// Accelerations and torques at velocities and spins halfway, from those of `before_`. @return whether they settle
   bool find_middle(const real& h) {
-    using std::isfinite;
     static constexpr int most_rounds = 100;
-    const real rounding(16 * std::numeric_limits<real>::epsilon() * std::numeric_limits<real>::epsilon());
     middle_->assign_state(*before_);
     for (int round = 0; round < most_rounds; ++round) {
       ForceSink<real> sink(acceleration_, *middle_, {});
       sink.set_torques(torque_);
       tides_.add_to(sink, *middle_);
-      const Change of_v = go_halfway(h, std::as_const(*before_).velocities(), acceleration_, middle_->velocities());
-      const Change of_spin = go_halfway(h, std::as_const(*before_).template column<BodySpin>(), torque_,
-                                        middle_->template column<BodySpin>());
-      if (!isfinite(of_v.size + of_spin.size)) break;
-      if (of_v.change <= rounding * of_v.size && of_spin.change <= rounding * of_spin.size) return true;
+      bool settled = go_halfway(h, std::as_const(*before_).velocities(), acceleration_, middle_->velocities());
+      settled = go_halfway(h, std::as_const(*before_).template column<BodySpin>(), torque_,
+                           middle_->template column<BodySpin>()) &&
+                settled;
+      if (settled) return true;
     }
     if (!observing_) {
       failure_ = Failure{Outcome::Kind::solver_failure, -1, "velocity",
@@ -117,20 +116,19 @@ template <SplitHamiltonian H> class Tidal : public Wrapped<H> {
     }
     return false;
   }
-  struct Change {
-    real change = real(0), size = real(0);  ///< squares of the largest ones
-  };
-  static Change go_halfway(const real& h, const VectorColumn<real>& from, const VectorColumn<real>& rate,
-                           VectorColumn<real>& to) {
-    Change most;
+  /// Puts what is halfway into `to`. @return whether each row was there already, to rounding of its own size
+  static bool go_halfway(const real& h, const VectorColumn<real>& from, const VectorColumn<real>& rate,
+                         VectorColumn<real>& to) {
+    using std::isfinite;
+    const real rounding(16 * std::numeric_limits<real>::epsilon() * std::numeric_limits<real>::epsilon());
+    bool settled = true;
     for (Index i = 0; i < from.size(); ++i) {
-      const Vec3<real> middle = from[i] + h / real(2) * rate[i];
-      const real moved2 = norm2(Vec3<real>(middle - std::as_const(to)[i])), size2 = norm2(middle);
-      if (!(moved2 <= most.change)) most.change = moved2;
-      if (!(size2 <= most.size)) most.size = size2;  // what is not a number stays
+      const Vec3<real> change = h / real(2) * rate[i], middle = from[i] + change;
+      const real moved2 = norm2(Vec3<real>(middle - std::as_const(to)[i])), size2 = norm2(middle) + norm2(change);
+      settled = settled && moved2 <= rounding * size2 && isfinite(size2);  // what is not a number is never settled
       to.set(i, middle);
     }
-    return most;
+    return settled;
   }
 
   Tides tides_;

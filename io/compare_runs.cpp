@@ -214,9 +214,11 @@ template <class Map> std::vector<std::string> names_in(const Map& map) {
 
 /// Numbers and texts that do not grow, by name: of particles or a system, of their types, molecules and bonded terms.
 /// Left out is in which order the particles stood in memory. @param types  false: without what tells types and bonds
-std::map<std::string, std::vector<std::string>> constants_in(const Hdf5File& file, bool types) {
+/// @param bodies  false: without what rigid bodies are made of
+std::map<std::string, std::vector<std::string>> constants_in(const Hdf5File& file, bool types, bool bodies) {
   std::map<std::string, std::vector<std::string>> all;
   for (const std::string& group : constant_groups()) {
+    if (group == bodies_path && !bodies) continue;
     for (const std::string& name : file.children(group)) {
       if (file.is_group(group + "/" + name) || group + "/" + name == topology_path + "/order") continue;
       const bool of_types = group != system_path && (group != particles_path || name == "species" || name == "charge");
@@ -251,7 +253,15 @@ void compare_constants(const Hdf5File& a, const Hdf5File& b, RunComparison& resu
                     : !knows_no_types(a) ? "the second is"
                                          : "both are"));
   }
-  const auto mine = constants_in(a, types), theirs = constants_in(b, types);
+  const auto knows_no_bodies = [](const Hdf5File& file) {
+    return file.has(particles_path + "/orientation") && !file.has(bodies_path + "/kind");
+  };
+  const bool bodies = !knows_no_bodies(a) && !knows_no_bodies(b);
+  if (!bodies) {
+    result.notes.push_back(
+        "what rigid bodies are made of is not compared: a file is from a version that did not store it");
+  }
+  const auto mine = constants_in(a, types, bodies), theirs = constants_in(b, types, bodies);
   std::vector<std::string>& told = result.constants;
   compare_names(names_in(mine), names_in(theirs), "dataset", told);
   for (const auto& [name, values] : mine) {

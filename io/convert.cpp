@@ -217,8 +217,8 @@ void convert_to_bodies(const std::filesystem::path& file, const std::filesystem:
   const FrameParticles start = read_frame_particles(file, {.frame = options.frame});
   const auto& left_out = start.left_out;
   if (std::find(left_out.begin(), left_out.end(), BodyOrientation::name) != left_out.end()) {
-    throw Error(fmt::format("'{}' has rigid bodies, and does not say what they are made of; continue the run by "
-                            "--resume, or start from its scene",
+    throw Error(fmt::format("'{}' has rigid bodies, and is from a version that did not store what they are made "
+                            "of; start from its scene",
                             file.string()),
                 {.value = file.string()});
   }
@@ -260,6 +260,7 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
   }
   try_in_child(file, [&] {
     const TrajectoryReader reader(file);
+    static_cast<void>(FrameSites::are_in(reader));
     for (Index k = 0; k < reader.frames(); ++k) reader.frame(k);
   });
   const TrajectoryReader reader(file);

@@ -282,9 +282,11 @@ class ExtendedXyzReader {
   Vec3<double> velocity(std::size_t line, double mass, const std::string& species) const {
     if (velocity_) return vector(line, *velocity_, "velo") * units_.velocity;
     if (!momentum_) return Vec3<double>::Zero();
+    const Vec3<double> momentum = vector(line, *momentum_, "momenta");
+    if (mass == 0 && momentum == Vec3<double>::Zero()) return momentum;  // a site without mass
     if (!(mass > 0))
       text_.fail(line, fmt::format("momenta are given, but there is no mass for '{}'", species), species);
-    return vector(line, *momentum_, "momenta") * (units_.momentum_velocity / mass);
+    return momentum * (units_.momentum_velocity / mass);
   }
 
   Vec3<double> vector(std::size_t line, const XyzProperty& property, const std::string& name) const {

@@ -101,6 +101,39 @@ void check_stored(const TrajectoryReader& reader, const StoredFrame& stored, con
   }
 }
 
+/// The columns that rigid bodies have.
+const std::vector<ColumnInfo>& columns_of_bodies() {
+  static const std::vector<ColumnInfo> all = ColumnList<BodyInertia, BodyOrientation, BodySpin>::infos();
+  return all;
+}
+
+/// Bodies have their columns, whose numbers are finite, and exactly they have moments; types of sites are there.
+void check_columns_of_bodies(const StoredFrame& stored, const std::filesystem::path& path) {
+  const auto refuse = [&](const std::string& what) { throw FileError("damaged: " + what, {.file = path.string()}); };
+  for (const ColumnInfo& wanted : columns_of_bodies()) {
+    const auto found = stored.columns.find(wanted.name);
+    if (found == stored.columns.end() || found->second.info.width != wanted.width)
+      refuse(fmt::format("there are rigid bodies, but no column '{}' of {} numbers each", wanted.name, wanted.width));
+    const std::vector<double>& values = found->second.values;
+    if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); }))
+      refuse(fmt::format("column '{}' is not finite", wanted.name));
+  }
+  const std::vector<double>& inertia = stored.columns.at(std::string(BodyInertia::name)).values;
+  for (std::size_t i = 0; i < stored.order.size(); ++i) {
+    const auto row = 3 * static_cast<std::size_t>(stored.order[i]);
+    const bool turns = inertia[row] > 0 || inertia[row + 1] > 0 || inertia[row + 2] > 0;
+    if (turns == (stored.bodies->kind(static_cast<Index>(i)) != nullptr)) continue;
+    refuse(
+        fmt::format("particle {} has {}", i, turns ? "moments of inertia, but is no body" : "no moments of inertia"));
+  }
+  if (stored.topology == nullptr) return;
+  for (const BodyKind& kind : stored.bodies->kinds) {
+    for (const BodySite& site : kind.sites) {
+      if (site.type >= stored.topology->type_count()) refuse(fmt::format("a site is of type {}", site.type));
+    }
+  }
+}
+
 /// A frame, the last where the number is not one of the file: the caller looks. @throws FileError
 StoredFrame stored_frame(const std::filesystem::path& path, std::int64_t wanted) {
   const TrajectoryReader reader(path);
@@ -126,6 +159,7 @@ StoredFrame stored_frame(const std::filesystem::path& path, std::int64_t wanted)
   // Species without names of types were numbers of names.
   stored.knows_types = stored.topology != nullptr || !reader.file().has(particles_path + "/species");
   stored.columns = stored_columns(reader, stored.frame);
+  if (stored.bodies != nullptr) check_columns_of_bodies(stored, path);
   check_stored(reader, stored, path);
   if (reader.file().has("/noether/scene")) stored.scene_toml = reader.file().read_text("/noether/scene");
   RunningDigest hash;
@@ -139,12 +173,6 @@ StoredFrame stored_frame(const std::filesystem::path& path, std::int64_t wanted)
 template <class Number> Vec3<Number> row_of(const std::vector<Number>& numbers, Index row) {
   const auto at = 3 * static_cast<std::size_t>(row);
   return {numbers.at(at), numbers.at(at + 1), numbers.at(at + 2)};
-}
-
-/// The columns that rigid bodies have.
-const std::vector<ColumnInfo>& columns_of_bodies() {
-  static const std::vector<ColumnInfo> all = ColumnList<BodyInertia, BodyOrientation, BodySpin>::infos();
-  return all;
 }
 
 /// Whether the new run has room for a column: the charge always, those of rigid bodies where it is known what they are
@@ -161,13 +189,13 @@ bool has_room_for(const ColumnInfo& info, const FrameOptions& options, bool bodi
 ColumnInfo declared(const ColumnInfo& info, const FrameOptions& options) {
   if (options.columns) {
     for (const ColumnInfo& one : *options.columns) {
-      if (one.name == info.name) return one;
+      if (one.name == info.name && one.width == info.width) return one;
     }
   }
   for (const ColumnInfo& one : columns_of_bodies()) {
-    if (one.name == info.name) return one;
+    if (one.name == info.name && one.width == info.width) return one;
   }
-  return info.name == Charge::name ? column_info<Charge>() : info;
+  return info.name == Charge::name && info.width == 1 ? column_info<Charge>() : info;
 }
 
 void give_columns(const StoredFrame& stored, const FrameOptions& options, FrameParticles& result) {

@@ -4,6 +4,7 @@
 #include "engine/topology.hpp"
 #include "io/frame_particles.hpp"
 #include "io/trajectory_bodies.hpp"
+#include "io/trajectory_digest.hpp"
 #include "io/trajectory_reader.hpp"
 #include "io/trajectory_topology.hpp"
 
@@ -13,7 +14,14 @@
 namespace noether::io {
 
 bool FrameSites::are_in(const TrajectoryReader& reader) {
-  if (!reader.file().has(bodies_path + "/site_kind")) return false;
+  if (!reader.file().has(bodies_path + "/site_kind")) {
+    const Hdf5File& file = reader.file();
+    const bool differs = file.has_attribute("/noether", constants_attribute) &&
+                           file.text_attribute("/noether", constants_attribute) != constants_digest(file);
+    if (differs && reader.shared().columns.contains("orientation"))
+      throw FileError("damaged: what rigid bodies are made of differs from what was written", {.file = file.name()});
+    return false;
+  }
   const std::vector<std::int64_t> kinds = reader.file().open(bodies_path + "/site_kind").read_integers();
   return std::adjacent_find(kinds.begin(), kinds.end()) != kinds.end();
 }
@@ -24,7 +32,6 @@ FrameSites::FrameSites(const TrajectoryReader& reader, const std::filesystem::pa
       sites_(bodies_, false),
       shared_(reader.shared()) {
   const ParticleSystem<double>& sites = sites_.particles();
-  shared_.columns.clear();
   shared_.ids.clear(), shared_.names.clear(), shared_.masses.clear(), shared_.types.clear(), shared_.charges.clear();
   const Topology* topology = bodies_.topology();
   for (Index i = 0; i < bodies_.size(); ++i) {
@@ -32,7 +39,8 @@ FrameSites::FrameSites(const TrajectoryReader& reader, const std::filesystem::pa
     for (Index a = sites_.first(i); a < sites_.first(i + 1); ++a) {
       const BodySite* site = kind != nullptr ? &kind->sites[static_cast<std::size_t>(a - sites_.first(i))] : nullptr;
       shared_.ids.push_back(a);
-      shared_.names.push_back(sites.name(a));
+      const bool alone = site == nullptr || kind->sites.size() == 1;  // it goes by the name of its body
+      shared_.names.push_back(alone || site->name.empty() ? bodies_.name(i) : site->name);
       shared_.masses.push_back(site != nullptr ? site->mass : sites.masses()[a]);
       if (sites.has<Charge>()) shared_.charges.push_back(sites.column<Charge>()[a]);
       if (topology == nullptr || topology->type_names.empty()) continue;
@@ -64,6 +72,16 @@ Frame FrameSites::frame(const Frame& of_bodies) {
   Frame all{.step = of_bodies.step, .time = of_bodies.time, .positions = {}, .velocities = {}};
   all.edges = of_bodies.edges;
   const ParticleSystem<double>& sites = sites_.particles();
+  for (const auto& [name, column] : shared_.columns) {  // of the body of each site
+    const auto width = static_cast<std::size_t>(column.first);
+    std::vector<double>& values = all.columns[name];
+    for (Index i = 0; i < bodies_.size(); ++i) {
+      const auto row = static_cast<std::size_t>(order_[static_cast<std::size_t>(i)]);
+      const auto from = of_bodies.columns.at(name).begin() + static_cast<std::ptrdiff_t>(width * row);
+      for (Index a = sites_.first(i); a < sites_.first(i + 1); ++a)
+        values.insert(values.end(), from, from + static_cast<std::ptrdiff_t>(width));
+    }
+  }
   for (Index i = 0; i < bodies_.size(); ++i) {
     const Vec3<double> rate = angular_velocity<double>(bodies_.column<BodyOrientation>()[i],
                                                        bodies_.column<BodySpin>()[i], bodies_.column<BodyInertia>()[i]);

@@ -20,9 +20,11 @@ class FrameSites {
   FrameSites(const TrajectoryReader& reader, const std::filesystem::path& file);
 
   /// Whether some body has several sites, so that they show more than its centre does.
+  /// @throws FileError  where they stood in the file and are lost
   static bool are_in(const TrajectoryReader& reader);
 
-  /// What all frames share. Names are those of sites and their bodies, "O of water_1".
+  /// What all frames share. Sites have their names, those of bodies of one site and points the particle's, and all the
+  /// orientation and spin of their body.
   const Frames& shared() const { return shared_; }
   /// Where the sites are in a frame of the bodies.
   Frame frame(const Frame& of_bodies);

@@ -83,6 +83,7 @@ std::shared_ptr<const Bodies> read_rigid_bodies(const Hdf5File& file, const std:
   };
   for (const std::int64_t one : held) bodies.kinds.push_back({.sites = {}, .held = one != 0});
   for (std::size_t k = 0; k < sites; ++k) {
+    if (!(masses[k] >= 0)) refuse_bodies(file, fmt::format("a site has the mass {}", masses[k]));
     if (types[k] < 0 || types[k] > 1 << 20) refuse_bodies(file, fmt::format("a site is of type {}", types[k]));
     bodies.kinds[static_cast<std::size_t>(known(kinds[k], 0))].sites.push_back(
         {.place = {places[3 * k], places[3 * k + 1], places[3 * k + 2]},

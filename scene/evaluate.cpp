@@ -92,7 +92,11 @@ Evaluation evaluate(const Scene& scene, bool check) {
   bool has_pressure =
       s.box().is_periodic() && scene.hamiltonian.constraints.empty() && !(has_bodies(s) && s.bodies()->any_held());
   std::size_t own = scene.hamiltonian.splitting.own.size();  // these pull at centres of bodies
-  for (const SceneForce& term : scene.hamiltonian.terms()) {
+  std::vector<SceneForce> terms = scene.hamiltonian.terms();
+  for (const SceneForce& force : scene.hamiltonian.forces) {  // a letter of its own that has a potential: tides
+    if (force.letter && force.force.claims().on_bodies) terms.push_back(force);
+  }
+  for (const SceneForce& term : terms) {
     ForceSink<double> sink(a, s, {.energy = true, .virial = true});
     AnyForce<double> bound = own > 0 ? term.force : scene.hamiltonian.on_bodies(term.force);
     if (own > 0) --own;
@@ -108,7 +112,7 @@ Evaluation evaluate(const Scene& scene, bool check) {
     result.virial += has_virial ? sink.virial() : Mat3<double>(Mat3<double>::Constant(nan));
     has_pressure = has_pressure && has_virial;
     for (Index i = 0; i < s.size(); ++i) result.forces.add(i, std::as_const(s).masses()[i] * a[i]);
-    if (check && !failed && claims.energy)  // else it is the gradient of nothing
+    if (check && !failed && claims.energy && !claims.velocity_dependent)  // else it is the gradient of nothing
       result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(bound, s));
   }
   if (!scene.hamiltonian.splitting.only_forces) {

@@ -106,18 +106,18 @@ ParticleSystem<double> from_frame(TableReader& reader, const std::filesystem::pa
   }
   for (const std::string& name : found.left_out) {
     if (name == BodyOrientation::name) {
-      reader.fail("bodies", fmt::format("{} has rigid bodies, and does not say what they are made of; continue the run "
-                                        "by --resume, or start from its scene",
+      reader.fail("bodies", fmt::format("{} has rigid bodies, and is from a version that did not store what they are "
+                                        "made of; start from its scene",
                                         reader.text("bodies")));
     }
     warnings.push_back(
         fmt::format("no part of this scene uses the column '{}' of {}: it is left out", name, reader.text("bodies")));
   }
-  if (reader.has("body") && (s.topology() != nullptr || s.has<Charge>())) {
-    reader.fail("body",
-                fmt::format("the particles of {} have types, bonds or charges, which bodies of tables would not "
-                            "have; take [[particles.body]] out",
-                            reader.text("bodies")));
+  for (const char* key : {"body", "rigid_body"}) {
+    if (!reader.has(key) || (s.topology() == nullptr && !s.has<Charge>())) continue;
+    reader.fail(key, fmt::format("the particles of {} have types, bonds or charges, which bodies of tables would not "
+                                 "have; take [[particles.{}]] out",
+                                 reader.text("bodies"), key));
   }
   return s;
 }

@@ -383,6 +383,8 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
       row.recommended_step = recommended(row, scale, kepler, found.turning);
     } else {
       if (row.limit_step) row.recommended_step = *row.limit_step / 2;
+      if (found.turning && found.turning->by_axes)
+        row.recommended_step = std::min(row.recommended_step.value_or(INFINITY), found.turning->recommended());
       row.limit_h_omega.reset();
       row.gap_end.reset();
       row.bounded_until.reset();

@@ -202,6 +202,83 @@ TEST_CASE("tides in 113 bits are those in doubles", "[integrators][tides]") {
   CHECK(std::abs(sink.potential() / static_cast<double>(in_quad.potential()) - 1) < 1e-15);
 }
 
+TEST_CASE("under the coordinates of Wisdom and Holman three bodies and a tracer have the tides of kicks",
+          "[integrators][tides]") {
+  const auto system = [] {
+    ParticleSystem<double> s(unit_system("reduced"));
+    add_body(s, body_of_inertia("star", 1, {1e-3, 1e-3, 1e-3}), {.spin = Vec3<double>(0, 0, 2e-3)});
+    add_body(s, body_of_inertia("inner", 1e-3, {1e-7, 1e-7, 1.2e-7}),
+             {.x = {1, 0, 0}, .v = {0, 1.05, 0.1}, .spin = Vec3<double>(1e-8, 0, 3e-7)});
+    add_body(s, body_of_inertia("outer", 2e-3, {1e-7, 1e-7, 1e-7}), {.x = {0, 2.3, 0}, .v = {-0.66, 0, 0}});
+    s.add("tracer", 0, {-3.5, 0, 0}, {0, -0.53, 0});
+    give_tides(s, 0, {0.1, 0.1, 0.05});
+    give_tides(s, 1, {0.3, 0.03, 0.2});
+    s.column<LoveNumber>()[1] *= 1e3;  // strong enough to be seen
+    return s;
+  };
+  const auto end = [&](AnyH h, double step, bool compensated = false) {
+    Simulation sim(system(), compose(std::move(h), schemes::verlet, {.compensated = compensated}), step);
+    REQUIRE(sim.run_until(5).ok());
+    return sim.particles();
+  };
+  const ParticleSystem<double> wanted = end(on_kicks(), 0.0005);
+  const auto apart = [&](const ParticleSystem<double>& s) {
+    double most = 0;
+    for (Index i = 0; i < 4; ++i) most = std::max(most, (s.positions()[i] - wanted.positions()[i]).norm());
+    for (Index i = 0; i < 2; ++i) {
+      const Vec3<double> spin = wanted.column<BodySpin>()[i];
+      most = std::max(most, (s.column<BodySpin>()[i] - spin).norm() / spin.norm());
+    }
+    return most;
+  };
+  for (const Coordinates coordinates :
+       {Coordinates::jacobi, Coordinates::democratic, Coordinates::whds, Coordinates::barycentric}) {
+    for (const bool compensated : {false, true}) {
+      const AnyH h(
+          with_letter(Tides{}, AnyH(Rotating<AnyH>(AnyH(WisdomHolman<double>({.coordinates = coordinates}))))));
+      INFO(static_cast<int>(coordinates) << (compensated ? ", compensated" : ""));
+      CHECK(apart(end(h, 0.001, compensated)) < 3e-5);
+    }
+  }
+  ParticleSystem<double> still = system();
+  still.column<LoveNumber>()[0] = 0;
+  still.column<LoveNumber>()[1] = 1e-30;
+  Simulation sim(still, compose(on_kicks(), schemes::verlet), 0.005);
+  REQUIRE(sim.run_until(5).ok());
+  CHECK(apart(sim.particles()) > 1e-3);  // the tides are seen
+}
+
+TEST_CASE("a run whose tides fail ends where they failed, whenever somebody looks", "[integrators][tides]") {
+  std::vector<std::int64_t> ends;
+  for (const std::int64_t cadence : {1, 7, 1000}) {
+    // Two bodies fall onto each other.
+    ParticleSystem<double> s(unit_system("reduced"));
+    add_body(s, body_of_inertia("one", 1, {0.02, 0.02, 0.03}));
+    add_body(s, body_of_inertia("two", 1, {0.02, 0.02, 0.03}), {.x = {1, 0.01, 0}});
+    give_tides(s, 0, {0.4, 0.5, 0.1});
+    give_tides(s, 1, {0.4, 0.5, 0.1});
+    Simulation sim(s, compose(on_kicks(), schemes::verlet), 0.001);
+    sim.every(cadence, Energy{});
+    const Outcome outcome = sim.run(5000);
+    CHECK(outcome.kind == Outcome::Kind::solver_failure);
+    ends.push_back(sim.step());
+  }
+  CHECK(ends[0] > 100);
+  CHECK((ends[1] == ends[0] && ends[2] == ends[0]));
+}
+
+TEST_CASE("a body of small spin is followed as well beside one of large spin", "[integrators][tides]") {
+  const auto spin_of_moon = [](double spin_of_other) {
+    ParticleSystem<double> s = moon(1, 1e-20, 0, 2e-20 * Vec3<double>(0, 0, 1), {0.3, 0.01, 5.56e-6});
+    add_body(s, body_of_inertia("other", 1e-9, {1, 1, 1}),
+             {.x = {50, 0, 0}, .spin = Vec3<double>(0, 0, spin_of_other)});
+    Simulation sim(s, compose(on_kicks(), schemes::verlet), 0.125);
+    REQUIRE(sim.run_until(1).ok());
+    return Vec3<double>(sim.particles().column<BodySpin>()[1]);
+  };
+  CHECK((spin_of_moon(0) - spin_of_moon(0.4)).norm() < 1e-34);
+}
+
 TEST_CASE("tides that cannot be are refused", "[integrators][tides][messages]") {
   ParticleSystem<double> s = two_tidal_bodies(0.01);
   const auto refused = [](const ParticleSystem<double>& particles) {
@@ -210,6 +287,8 @@ TEST_CASE("tides that cannot be are refused", "[integrators][tides][messages]") 
   CHECK(refused(s).empty());
   s.column<BodyRadius>()[1] = 0;
   CHECK(refused(s) == "'two' has a love_number, but no radius; give one above 0");
+  s.column<BodyRadius>()[1] = -0.3;
+  CHECK(refused(s) == "the radius of 'two' is -0.3; a length above 0 is expected");
   s.column<BodyRadius>()[1] = 0.1;
   s.column<TideLag>()[0] = -1;
   CHECK(refused(s) == "the tide_lag of 'one' is -1; 0 or more is expected");
@@ -222,6 +301,14 @@ TEST_CASE("tides that cannot be are refused", "[integrators][tides][messages]") 
   s.column<LoveNumber>()[2] = 1;
   CHECK(refused(s) ==
         "'point' has a love_number, but no moments of inertia; tides turn bodies, so make it a rigid body");
+  ParticleSystem<double> line(unit_system("reduced"));
+  add_body(line, body_of_inertia("line", 1, {1, 1, 0}));
+  give_tides(line, 0, {0.4, 0.3, 0.1});
+  CHECK(refused(line) ==
+        "'line' has a love_number, but is a line, about which tides would turn it; give it three moments of inertia");
+  ParticleSystem<double> held = two_tidal_bodies(0.01);
+  add_body(held, top("top", 1, {1, 1, 0.5}, {0, 0, 0.5}), {.x = {9, 0, 0}});
+  CHECK(refused(held) == "tides move bodies, but a fixed point holds one of them; take tides out, or the fixed point");
 }
 
 }  // namespace noether::tides

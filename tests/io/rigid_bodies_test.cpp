@@ -12,6 +12,7 @@
 #include "tests/io/support.hpp"
 #include "tests/support/files.hpp"
 
+#include <cmath>
 #include <memory>
 
 #if NOETHER_HDF5
@@ -123,6 +124,47 @@ TEST_CASE("a run of rigid bodies begins from a frame", "[io][rigid_bodies]") {
   CHECK((whole.positions()[0] - rest.positions()[0]).norm() < 1e-14);
   CHECK((whole.column<BodyOrientation>()[0] - rest.column<BodyOrientation>()[0]).norm() < 1e-14);
   CHECK((whole.column<BodySpin>()[0] - rest.column<BodySpin>()[0]).norm() < 1e-15);
+}
+
+TEST_CASE("bodies of tables beside those of a frame with types are refused, of both kinds", "[io][rigid_bodies]") {
+  const ScratchFolder folder;
+  io::write_one_frame(folder / "run.h5", mixture(), 3, 0.25);
+  const auto refused = [&](const std::string& table) {
+    return error_of([&] {
+      read_scene("units = 'molecular'\n[particles]\nbodies = 'run.h5'\n" + table +
+                     "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'lennard_jones'\n"
+                     "cutoff = '0.6 nm'\nepsilon = '1 kJ/mol'\nsigma = '0.3 nm'\n"
+                     "[integrator]\nmethod = 'verlet'\nstep = '1 fs'\nsteps = 1\n",
+                 folder / "scene.toml");
+    });
+  };
+  CHECK(
+      refused("[[particles.rigid_body]]\nname = 'more'\nmass = '1 u'\ninertia = ['1 u nm^2', '1 u nm^2', '1 u nm^2']\n"
+              "x = ['1 nm', '1 nm', '1 nm']\n")
+          .find("take [[particles.rigid_body]] out") != std::string::npos);
+  CHECK(refused("[[particles.body]]\nname = 'more'\nmass = '1 u'\nx = ['1 nm', '1 nm', '1 nm']\n")
+            .find("take [[particles.body]] out") != std::string::npos);
+}
+
+TEST_CASE("frames whose bodies do not fit their particles are damaged", "[io][rigid_bodies]") {
+  const ScratchFolder folder;
+  ParticleSystem<double> s = mixture();
+  s.column<BodyInertia>().set(1, Vec3<double>(1, 1, 1));  // of the ion
+  io::write_one_frame(folder / "run.h5", s, 0, 0);
+  CHECK(error_of([&] { io::read_frame_particles(folder / "run.h5"); }).find("moments of inertia, but is no body") !=
+        std::string::npos);
+  s = mixture();
+  Bodies bodies = *s.bodies();
+  bodies.kinds[0].sites[1].type = 9;
+  s.set_bodies(std::make_shared<const Bodies>(bodies));
+  io::write_one_frame(folder / "run.h5", s, 0, 0);
+  CHECK(error_of([&] { io::read_frame_particles(folder / "run.h5"); }).find("a site is of type 9") !=
+        std::string::npos);
+  s = mixture();
+  s.column<BodySpin>().set(0, Vec3<double>(std::nan(""), 0, 0));
+  io::write_one_frame(folder / "run.h5", s, 0, 0);
+  CHECK(error_of([&] { io::read_frame_particles(folder / "run.h5"); }).find("'spin' is not finite") !=
+        std::string::npos);
 }
 
 }  // namespace

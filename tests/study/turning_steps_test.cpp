@@ -48,6 +48,22 @@ TEST_CASE("the fastest turn is known, and a rule of steps where turns are not ex
   }
 }
 
+TEST_CASE("a body that falls leaves by itself, and no step is blamed for it", "[stability][bodies]") {
+  for (const std::string rotor : {"exact", "axes"}) {
+    const Scene falling = read_scene(
+        "units = 'reduced'\n[[particles.rigid_body]]\nname = 'rock'\nmass = 1\ninertia = [1, 2, 2.5]\nx = [0, 0, 0]\n"
+        "v = [1, 0, 0]\nangular_velocity = [0, 0.1, 0.2]\n[hamiltonian]\ntype = 'kinetic_potential'\nrotor = '" +
+            rotor +
+            "'\n[[hamiltonian.force]]\ntype = 'uniform_field'\nacceleration = [0, 0, -1]\n"
+            "[integrator]\nmethod = 'verlet'\nstep = 0.1\nsteps = 1000\n",
+        "falling.toml");
+    const Stability found = find_stability(falling, {.methods = {"verlet"}, .confirm_steps = 1000, .row_budget = 2});
+    CHECK(found.solution_leaves);
+    INFO(to_text(found));
+    CHECK((!found.rows.at(0).limit_step || *found.rows[0].limit_step > 0.5));
+  }
+}
+
 TEST_CASE("points do not turn, nor bodies without spin", "[stability][bodies]") {
   Scene still = rocks("exact");
   for (Index i = 0; i < 2; ++i) still.particles.column<BodySpin>().set(i, Vec3<double>::Zero());
