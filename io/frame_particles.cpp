@@ -123,8 +123,8 @@ void check_columns_of_bodies(const StoredFrame& stored, const std::filesystem::p
     const auto row = 3 * static_cast<std::size_t>(stored.order[i]);
     const bool turns = inertia[row] > 0 || inertia[row + 1] > 0 || inertia[row + 2] > 0;
     if (turns == (stored.bodies->kind(static_cast<Index>(i)) != nullptr)) continue;
-    refuse(
-        fmt::format("particle {} has {}", i, turns ? "moments of inertia, but is no body" : "no moments of inertia"));
+    refuse(fmt::format("particle {} has {}", i,
+                       turns ? "moments of inertia, but is not a body" : "no moments of inertia"));
   }
   if (stored.topology == nullptr) return;
   for (const BodyKind& kind : stored.bodies->kinds) {

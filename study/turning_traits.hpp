@@ -15,7 +15,7 @@ struct MeasuredTurns {
   int claimed_order = 0;  ///< over that rotor
   double order = 0;       ///< slope of the errors of the orientation between steps of 1/16 and 1/32
   double kicks = 0;       ///< a step
-  double error = 0;       ///< of the orientation, largest entry of its matrix, at t = 2 with about 60 kicks in a unit of time
+  double error = 0;       ///< of the orientation, largest entry of its matrix, at t = 2 with about 60 kicks a time unit
 };
 
 /// Every scheme that turns a top of three different moments with its weight off all axes (I = (2, 1, 2/3), m g = 1,

@@ -151,7 +151,7 @@ TEST_CASE("frames whose bodies do not fit their particles are damaged", "[io][ri
   ParticleSystem<double> s = mixture();
   s.column<BodyInertia>().set(1, Vec3<double>(1, 1, 1));  // of the ion
   io::write_one_frame(folder / "run.h5", s, 0, 0);
-  CHECK(error_of([&] { io::read_frame_particles(folder / "run.h5"); }).find("moments of inertia, but is no body") !=
+  CHECK(error_of([&] { io::read_frame_particles(folder / "run.h5"); }).find("moments of inertia, but is not a body") !=
         std::string::npos);
   s = mixture();
   Bodies bodies = *s.bodies();
