@@ -35,14 +35,20 @@ template <class Real> struct SlopeError {
   bool finite = true;
 
   /// @param at  at(m): the energy m steps of length `h` away
-  /// @param noise  what rounding of the energy leaves open
-  template <class At> void ask(const Real& given, const At& at, const Real& h, const Real& noise) {
+  /// @param rounding  what rounding of an energy of 1 leaves open
+  template <class At>
+  void ask(const Real& given, const At& at, const Real& h, const Real& energy, const Real& rounding) {
     using std::abs, std::isfinite;
-    const Real slope = (Real(45) * (at(1) - at(-1)) - Real(9) * (at(2) - at(-2)) + (at(3) - at(-3))) / (Real(60) * h);
-    const Real difference = abs(given + slope);
+    const Real up[3] = {at(1), at(2), at(3)}, down[3] = {at(-1), at(-2), at(-3)};
+    const Real slope =
+        (Real(45) * (up[0] - down[0]) - Real(9) * (up[1] - down[1]) + (up[2] - down[2])) / (Real(60) * h);
+    const Real difference = abs(given + slope), here = at(0);
     finite = finite && isfinite(difference);  // std::max would drop a NaN
-    worst = std::max(worst, Real(difference - noise));
-    largest = std::max({largest, Real(abs(given)), isfinite(slope) ? Real(abs(slope)) : Real(0)});
+    worst = std::max(worst, Real(difference - rounding * energy / h));
+    largest = std::max(largest, Real(abs(given)));
+    // Where nothing was given, a slope that is more than what rounding leaves of a minimum counts.
+    if (abs(slope) * h > Real(1e-6) * (abs(up[2] - here) + abs(down[2] - here)))
+      largest = std::max(largest, Real(abs(slope)));
   }
   double relative() const {
     if (!finite) return std::numeric_limits<double>::infinity();
@@ -75,7 +81,7 @@ SlopeErrors errors_by_differences(AnyForce<Real> force, ParticleSystem<Real> s, 
   const auto n = static_cast<double>(s.size());
   scale = sqrt(scale / Real(n)) / Real(std::cbrt(n));
   const Real h = relative_step * (scale > Real(0) ? scale : Real(1));
-  const Real noise = Real(100) * rounding * energy;
+  const Real open = Real(100) * rounding;
   SlopeError<Real> forces, torques;
   const Index asked = particles_asked(s.size());
   for (Index place = 0; place < asked; ++place) {
@@ -89,7 +95,7 @@ SlopeErrors errors_by_differences(AnyForce<Real> force, ParticleSystem<Real> s, 
         s.positions().component(k)[i] = x;
         return u;
       };
-      forces.ask(s.masses()[i] * std::as_const(a).component(k)[i], at, h, noise / h);
+      forces.ask(s.masses()[i] * std::as_const(a).component(k)[i], at, h, energy, open);
     }
     if (!has_bodies(s) || turning_freedoms<Real>(std::as_const(s).template column<BodyInertia>()[i]) == 0) continue;
     const Quaternion<Real> q = std::as_const(s).template column<BodyOrientation>()[i];
@@ -101,7 +107,7 @@ SlopeErrors errors_by_differences(AnyForce<Real> force, ParticleSystem<Real> s, 
         orientation.set(i, q);
         return u;
       };
-      torques.ask(std::as_const(torque).component(k)[i], at, relative_step, noise / relative_step);
+      torques.ask(std::as_const(torque).component(k)[i], at, relative_step, energy, open);
     }
   }
   return {forces.relative(), torques.relative()};
