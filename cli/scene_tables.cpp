@@ -169,7 +169,7 @@ SceneTable site() {
           fields({{"name", "text", "1", "", "in frames and messages"},
                   {"place", "vector", "length", "", "from any point of the body, along any axes", "[0, 0, \"0.1 nm\"]"},
                   {"mass", "number", "mass", "0", "0: a site that only takes forces"},
-                  {"charge", "number", "charge", "0", "its charge"},
+                  {"charge", "number", "charge", "", "its charge; default: that of its type"},
                   {"type", "text", "1", "", "its type, where there are [[particles.type]] tables"}})};
 }
 

@@ -29,7 +29,7 @@ constexpr std::array<SiteColumn, 7> site_columns = {{{"x", "length"},
 
 class SiteTable {
  public:
-  SiteTable(const std::filesystem::path& file, const UnitSystem& units, const std::vector<std::string>& types)
+  SiteTable(const std::filesystem::path& file, const UnitSystem& units, const SiteTypes& types)
       : text_(file, "a table of sites, CSV"), units_(units), types_(types) {}
 
   std::vector<BodySite> read() {
@@ -81,7 +81,8 @@ class SiteTable {
     for (const std::string_view name : {"x", "y", "z", "mass"}) {
       if (!has(name)) text_.fail(line, fmt::format("there is no column '{}'", name));
     }
-    if (types_.size() > 1 && !has("type")) text_.fail(line, "there is no column 'type', but there are several types");
+    if (types_.names.size() > 1 && !has("type"))
+      text_.fail(line, "there is no column 'type', but there are several types");
     if (!of_place && !units_.is_reduced()) refuse_unit(line, "x");
     for (Found& column : columns_) {
       if (column.known < 3 && !column.has_unit) column.unit = of_place.value_or(1);
@@ -121,11 +122,12 @@ class SiteTable {
       if (known.name == "name") {
         site.name = fields[k];
       } else if (known.name == "type") {
-        const auto found = std::find(types_.begin(), types_.end(), fields[k]);
-        if (found == types_.end()) {
-          text_.fail(line, fmt::format("unknown type '{}'{}", fields[k], did_you_mean(fields[k], types_)), fields[k]);
+        const std::vector<std::string>& names = types_.names;
+        const auto found = std::find(names.begin(), names.end(), fields[k]);
+        if (found == names.end()) {
+          text_.fail(line, fmt::format("unknown type '{}'{}", fields[k], did_you_mean(fields[k], names)), fields[k]);
         }
-        site.type = static_cast<int>(found - types_.begin());
+        site.type = static_cast<int>(found - names.begin());
       } else if (known.name == "mass") {
         site.mass = mass_number_in(text_, line, fields[k], what) * columns_[k].unit;
       } else if (known.name == "charge") {
@@ -134,19 +136,20 @@ class SiteTable {
         site.place[static_cast<Index>(columns_[k].known)] = number_in(text_, line, fields[k], what) * columns_[k].unit;
       }
     }
+    if (!has("charge")) site.charge = types_.charge(site.type);
     return site;
   }
 
   TextFile text_;
   const UnitSystem& units_;
-  const std::vector<std::string>& types_;
+  const SiteTypes& types_;
   std::vector<Found> columns_;
 };
 
 }  // namespace
 
 std::vector<BodySite> read_body_sites(const std::filesystem::path& file, const UnitSystem& units,
-                                      const std::vector<std::string>& types) {
+                                      const SiteTypes& types) {
   return SiteTable(file, units, types).read();
 }
 

@@ -137,19 +137,15 @@ class TypedBodies {
     return mass;
   }
 
-  const std::vector<std::string>& names() const { return topology_.type_names; }
+  io::SiteTypes of_sites() const {
+    io::SiteTypes types{topology_.type_names};
+    for (const TypeParameters& type : types_) types.charges.push_back(type.charge.value_or(0));
+    return types;
+  }
   /// Gives a site type and charge of the last body.
   void give_last_to(BodySite& site) const {
     site.charge = charges_.back().value_or(0);
     if (!topology_.types.empty()) site.type = static_cast<int>(topology_.types.back());
-  }
-
-  /// Gives sites without a charge that of their type.
-  void complete(std::vector<BodySite>& sites) const {
-    for (BodySite& site : sites) {
-      if (site.charge != 0 || types_.empty()) continue;
-      site.charge = types_[static_cast<std::size_t>(site.type)].charge.value_or(0);
-    }
   }
 
   void give_to(ParticleSystem<double>& s, TableReader& reader) {
@@ -269,10 +265,9 @@ class BodyTables {
   }
 
   void add_rigid_body(TableReader& body, const std::string& name, double mass, SceneValue& kept) {
-    RigidBody made = read_rigid_body(body, name, mass, options_.folder, typed_.names(), kept);
+    RigidBody made = read_rigid_body(body, name, mass, options_.folder, typed_.of_sites(), kept);
     if (!made.warning.empty()) warnings_.push_back(made.warning);
     if (made.sites.size() == 1) typed_.give_last_to(made.sites.front());
-    typed_.complete(made.sites);
     BodyState turn = read_turn(body);
     if (made.held) {
       turn.x = column(*body.vector("fixed_point", "length"));

@@ -16,7 +16,7 @@ namespace noether {
 namespace {
 
 /// One `[[particles.rigid_body.site]]`.
-BodySite read_site(TableReader& reader, const std::vector<std::string>& types) {
+BodySite read_site(TableReader& reader, const io::SiteTypes& types) {
   reader.expect_only({"name", "place", "mass", "charge", "type"});
   BodySite site{.name = reader.text("name")};
   const auto place = reader.vector("place", "length");
@@ -26,33 +26,37 @@ BodySite read_site(TableReader& reader, const std::vector<std::string>& types) {
   if (site.mass < 0) {
     reader.fail("mass", fmt::format("mass = {} is below 0; 0 or more is expected", to_text(*reader.find("mass"))));
   }
-  site.charge = reader.quantity("charge", "charge").value_or(0);
-  if (!reader.has("type") && types.size() > 1) {
+  const std::optional<double> charge = reader.quantity("charge", "charge");
+  const std::vector<std::string>& names = types.names;
+  if (!reader.has("type") && names.size() > 1) {
     reader.fail(nullptr, "type",
-                fmt::format("{} has no type, but there are {} types; give one", reader.what(), types.size()));
+                fmt::format("{} has no type, but there are {} types; give one", reader.what(), names.size()));
   }
-  if (!reader.has("type")) return site;
-  const std::string type = reader.text("type");
-  const auto found = std::find(types.begin(), types.end(), type);
-  if (found == types.end()) reader.fail("type", fmt::format("unknown type '{}'{}", type, did_you_mean(type, types)));
-  site.type = static_cast<int>(found - types.begin());
+  if (reader.has("type")) {
+    const std::string type = reader.text("type");
+    const auto found = std::find(names.begin(), names.end(), type);
+    if (found == names.end()) reader.fail("type", fmt::format("unknown type '{}'{}", type, did_you_mean(type, names)));
+    site.type = static_cast<int>(found - names.begin());
+  }
+  site.charge = charge.value_or(types.charge(site.type));
   return site;
 }
 
-SceneValue value_of(const BodySite& site, const UnitSystem& units, const std::vector<std::string>& types) {
+SceneValue value_of(const BodySite& site, const UnitSystem& units, const io::SiteTypes& types) {
   SceneValue table = SceneValue::table();
   if (!site.name.empty()) table.put("name", SceneValue::of(site.name));
   SceneValue::Array place;
   for (int k = 0; k < 3; ++k) place.push_back(detail::quantity_value(site.place[k], "length", units));
   table.put("place", SceneValue::of(std::move(place)));
   table.put("mass", detail::quantity_value(site.mass, "mass", units));
-  if (site.charge != 0) table.put("charge", detail::quantity_value(site.charge, "charge", units));
-  if (!types.empty()) table.put("type", SceneValue::of(types[static_cast<std::size_t>(site.type)]));
+  if (site.charge != 0 || !types.names.empty())
+    table.put("charge", detail::quantity_value(site.charge, "charge", units));
+  if (!types.names.empty()) table.put("type", SceneValue::of(types.names[static_cast<std::size_t>(site.type)]));
   return table;
 }
 
-std::vector<BodySite> read_sites(TableReader& body, const std::filesystem::path& folder,
-                                 const std::vector<std::string>& types, SceneValue& effective) {
+std::vector<BodySite> read_sites(TableReader& body, const std::filesystem::path& folder, const io::SiteTypes& types,
+                                 SceneValue& effective) {
   std::vector<BodySite> sites;
   if (body.has("sites")) {
     if (body.has("site")) body.fail("site", "sites come from a file and from tables; give one or the other");
@@ -109,7 +113,7 @@ const std::vector<std::string>& rigid_body_keys() {
 }
 
 RigidBody read_rigid_body(TableReader& body, const std::string& name, double mass, const std::filesystem::path& folder,
-                          const std::vector<std::string>& types, SceneValue& effective) {
+                          const io::SiteTypes& types, SceneValue& effective) {
   try {
     const bool by_sites = body.has("sites") || body.has("site");
     const int ways = (by_sites ? 1 : 0) + (body.has("semi_axes") ? 1 : 0) + (body.has("inertia") ? 1 : 0);

@@ -138,7 +138,7 @@ inline void take_bodies(std::string_view table) {
 inline void take_body_sites(std::string_view table) {
   const std::filesystem::path file = as_file("sites.csv", table);
   for (const char* system : {"molecular", "reduced"}) {
-    for (const std::vector<std::string>& types : {std::vector<std::string>{}, std::vector<std::string>{"O", "H"}}) {
+    for (const io::SiteTypes& types : {io::SiteTypes{}, io::SiteTypes{{"O", "H"}, {-0.8, 0.4}}}) {
       std::vector<BodySite> sites;
       if (!accepted([&] { sites = io::read_body_sites(file, unit_system(system), types); })) continue;
       RigidBody body;

@@ -260,5 +260,25 @@ TEST_CASE("what elements cannot be about is refused", "[scene][bodies][messages]
         "scene.toml:3: unknown elements 'jacoby'; did you mean 'jacobi'?");
 }
 
+TEST_CASE("a site has the charge that it is given, 0 too, else that of its type", "[scene][bodies]") {
+  const std::string head =
+      "[[particles.type]]\nname = 'Q'\nmass = 1\ncharge = -1\nepsilon = 1\nsigma = 1\n"
+      "[[particles.rigid_body]]\nname = 'pair'\nlinear = true\nx = [0, 0, 0]\nv = [0, 0, 0]\n";
+  const auto charges = [&](const std::string& sites, const std::string& file = "") {
+    const Scene scene = BodyScene(head + sites, file, "reduced").scene();
+    const std::vector<BodySite>& found = scene.particles.bodies()->kinds.at(0).sites;
+    // The scene as it is stored has the same.
+    const ScratchFolder folder;
+    const Scene again = read_scene(scene.effective_toml, folder / "scene.toml");
+    CHECK(again.particles.bodies()->kinds.at(0).sites == found);
+    return std::vector<double>{found.at(0).charge, found.at(1).charge};
+  };
+  CHECK(charges("site = [{place = [1, 0, 0], mass = 1, charge = 0}, {place = [-1, 0, 0], mass = 1}]\n") ==
+        std::vector<double>{0, -1});
+  CHECK(charges("sites = 'bodies.txt'\n", "x,y,z,mass,charge\n1,0,0,1,0\n-1,0,0,1,0.5\n") ==
+        std::vector<double>{0, 0.5});
+  CHECK(charges("sites = 'bodies.txt'\n", "x,y,z,mass\n1,0,0,1\n-1,0,0,1\n") == std::vector<double>{-1, -1});
+}
+
 }  // namespace
 }  // namespace noether::test
