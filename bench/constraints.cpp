@@ -220,15 +220,8 @@ void add_threads(const bench::Rows& rows, int threads) {
     for (const Index copies : {512, 4096, 32'768}) {
       Case one = made(name + "/newton", molecule, copies, {});
       one.slice();
-      std::vector<double> times;
-      for (int k = 0; k < 7; ++k) {
-        set_thread_count(1);
-        const double alone = one.slice(true);
-        set_thread_count(threads);
-        times.push_back(alone / one.slice(true));
-      }
-      set_thread_count(1);
-      rows.add(one.name, "times_as_quick", bench::Measured(times), "1", one.constraints());
+      rows.add(one.name, "times_as_quick", bench::times_as_quick(threads, [&] { return one.slice(true); }), "1",
+               one.constraints());
     }
   }
 }

@@ -206,15 +206,7 @@ void add_threads(const bench::Rows& rows, int threads) {
     const auto run = [&] {
       if (!sim.run(steps).ok()) std::exit(1);
     };
-    std::vector<double> times;
-    for (int k = 0; k < 7; ++k) {
-      set_thread_count(1);
-      const double alone = bench::seconds_of(run);
-      set_thread_count(threads);
-      times.push_back(alone / bench::seconds_of(run));
-    }
-    rows.add(name, "times_as_quick", bench::Measured(times), "1", n);
-    set_thread_count(1);
+    rows.add(name, "times_as_quick", bench::times_as_quick(threads, [&] { return bench::seconds_of(run); }), "1", n);
   };
   add("free axes", by_axes(free, free_bodies(100'000), 0.01), 20, 100'000);
   add("water by axes", by_axes(of_water, make_rigid(settled_water(512)), 2 * fs), 100, 512);

@@ -69,6 +69,20 @@ template <class Work> double processor_seconds_of(const Work& work) {
   return now() - start;
 }
 
+/// How many times as quick threads are as one: medians of pairs. One thread is left to work.
+/// @param seconds  of one piece of work, by the clock
+template <class Seconds> Measured times_as_quick(int threads, const Seconds& seconds) {
+  std::vector<double> times;
+  for (int k = 0; k < 7; ++k) {
+    set_thread_count(1);
+    const double alone = seconds();
+    set_thread_count(threads);
+    times.push_back(alone / seconds());
+  }
+  set_thread_count(1);
+  return Measured(times);
+}
+
 /// The processor's name.
 inline std::string processor() {
   std::ifstream info("/proc/cpuinfo");

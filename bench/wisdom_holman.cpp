@@ -60,6 +60,9 @@ std::vector<Variant> variants() {
           {"democratic", splitting(democratic), &plain, 5},
           {"democratic, relativity", splitting(democratic, bend), &plain, 5},
           {"democratic, compensated", splitting(democratic), &plain, 5, compensated},
+          {"jacobi, composed kernel", splitting(jacobi), &plain, 5, {.kernel = StepKernel::composed}},
+          {"jacobi, lazy kernel", splitting(jacobi), &plain, 5, {.kernel = StepKernel::lazy}},
+          {"jacobi, modified kernel", splitting(jacobi), &plain, 5, {.kernel = StepKernel::modified}},
           {"aba_10_6_4", splitting(jacobi), &fine, 40, {}, "saba(10,6,4)"},
           {"letters", splitting(jacobi, no_field), &plain, 5, {}, "whfast"},
           {"letters, compensated", splitting(jacobi, no_field), &plain, 5, compensated}};

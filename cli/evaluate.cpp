@@ -97,7 +97,7 @@ void print_text(const Scene& scene, const Evaluation& e) {
   if (!e.gradient_error) return;
   const Index particles = scene.particles.size(), asked = e.gradient_asked;
   fmt::print("{:<22}{:.2g} of the largest force{}{}\n", "force against -grad U", *e.gradient_error,
-             has_bodies(scene.particles) ? ", or of a torque of the largest one" : "",
+             has_bodies(scene.particles) ? " or torque" : "",
              asked < particles ? fmt::format(", checked at {} of {}", asked, counted(particles, "particle")) : "");
 }
 

@@ -186,8 +186,9 @@ Json traits_json(const MethodTraits& traits) {
 void print_measured(bool json) {
   std::vector<MeasuredMethod> methods_measured;
   for (const KnownMethod& known : all_known_methods()) methods_measured.push_back(measured_method(known));
+  const std::vector<MeasuredTurns> turns = measured_turns();
   if (!json) {
-    fmt::print("{}{}", methods_page(methods_measured), turning_section(measured_turns()));
+    fmt::print("{}{}", methods_page(methods_measured), turning_section(turns));
     return;
   }
   std::vector<Json> items;
@@ -199,8 +200,20 @@ void print_measured(bool json) {
                                   {"claimed", traits_json(method.claimed)},
                                   {"differences", Json::list_of(method.differences())}}));
   }
-  fmt::print("{}\n",
-             Json::object({{"schema", "noether.list/1"}, {"list", "methods"}, {"items", Json::list(items)}}).text());
+  std::vector<Json> turning;
+  for (const MeasuredTurns& one : turns) {
+    turning.push_back(Json::object({{"method", one.method},
+                                    {"rotor", one.rotor == Rotor::exact ? "exact" : "axes"},
+                                    {"order", one.order},
+                                    {"claimed_order", one.claimed_order},
+                                    {"kicks", one.kicks},
+                                    {"error", one.error}}));
+  }
+  fmt::print("{}\n", Json::object({{"schema", "noether.list/1"},
+                                   {"list", "methods"},
+                                   {"items", Json::list(items)},
+                                   {"turns", Json::list(turning)}})
+                         .text());
 }
 
 }  // namespace

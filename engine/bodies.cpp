@@ -88,6 +88,12 @@ bool Bodies::any_held() const {
   return std::any_of(kinds.begin(), kinds.end(), [](const BodyKind& kind) { return kind.held; });
 }
 
+Index Bodies::sites_beyond_one() const {
+  Index count = 0;
+  for (const int of : kind_of) count += of < 0 ? 0 : kinds[static_cast<std::size_t>(of)].massive_sites() - 1;
+  return count;
+}
+
 Index BodyKind::massive_sites() const {
   return std::count_if(sites.begin(), sites.end(), [](const BodySite& site) { return site.mass > 0; });
 }

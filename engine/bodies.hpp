@@ -76,6 +76,8 @@ struct Bodies {
     return of != nullptr && of->held;
   }
   bool any_held() const;
+  /// How many more sites with mass there are than bodies.
+  Index sites_beyond_one() const;
 
   bool operator==(const Bodies&) const = default;
 };
@@ -110,7 +112,7 @@ RigidBody ellipsoid(std::string name, double mass, const Vec3<double>& semi_axes
 
 /// A body of mass points: mass, centre, principal axes and moments follow from its sites.
 /// @param sites  places in any axes [length], masses [mass], charges
-/// @param linear  whether sites in a line are meant to be a body of two moments; nothing: as it comes
+/// @param linear  whether sites in a line are meant to be a body of two moments; empty: either is accepted
 /// @param straight  the least moment by the largest at which sites are in a line
 /// @throws Error  for fewer than two sites, no mass, or sites in a line that nobody said are
 RigidBody body_of_sites(std::string name, std::vector<BodySite> sites, std::optional<bool> linear = false,

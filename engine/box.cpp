@@ -33,6 +33,7 @@ void Box::shift(int k, double d, double& x, std::int32_t& image) const {
 }
 
 BoxAxis Box::axis(int k) const {
+  // A sum that rounding could bring back into the cell is beyond the last point of the grid already.
   return {edges_[k], std::ldexp(1.5, 52) * spacing_[k], std::ldexp(1.0, 50) * spacing_[k]};
 }
 
@@ -46,7 +47,6 @@ void Box::bring_in(int k, double* x, std::int32_t* image, Index count) const {
 }
 
 void Box::advance(int k, double h, const double* v, double* x, std::int32_t* image, Index count) const {
-  // A sum that rounding could bring back into the cell is beyond the last point of the grid already.
   const BoxAxis of = axis(k);
   const BoxKernels& kernels = box_kernels();
   for (Index i = 0; (i = kernels.advance(of, h, v, x, i, count)) < count; ++i) shift(k, h * v[i], x[i], image[i]);

@@ -28,25 +28,12 @@ NOETHER_EIGHT_INLINE void spread(const Eight& a, double* to, std::ptrdiff_t stri
   }
 }
 
-/// Rotations of eight bodies as matrices.
-struct Rotations {
-  Eights row[3];
-};
-
-NOETHER_EIGHT_INLINE Rotations rotations(const Eight& w, const Eight& x, const Eight& y, const Eight& z) {
-  const Eight two(2), ww = w * w, xx = x * x, yy = y * y, zz = z * z;
-  const Eight xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
-  return {{{ww + xx - yy - zz, two * (xy - wz), two * (xz + wy)},
-           {two * (xy + wz), ww - xx + yy - zz, two * (yz - wx)},
-           {two * (xz - wy), two * (yz + wx), ww - xx - yy + zz}}};
-}
-
 void place(const SiteColumns& c, const double* places, std::ptrdiff_t sites, std::ptrdiff_t from, std::ptrdiff_t to,
            std::ptrdiff_t site) {
   for (std::ptrdiff_t i = from; i < to; i += 8, site += 8 * sites) {
     const std::ptrdiff_t count = to - i;
-    const Rotations r = rotations(load_some(c.orientation[0] + i, count), load_some(c.orientation[1] + i, count),
-                                  load_some(c.orientation[2] + i, count), load_some(c.orientation[3] + i, count));
+    const EightRotations r = rotations(load_some(c.orientation[0] + i, count), load_some(c.orientation[1] + i, count),
+                                       load_some(c.orientation[2] + i, count), load_some(c.orientation[3] + i, count));
     for (int axis = 0; axis < 3; ++axis) {
       const Eights row = r.row[axis];
       const Eight x = load_some(c.x[axis] + i, count);

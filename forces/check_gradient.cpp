@@ -24,7 +24,7 @@ Real potential_of(const AnyForce<Real>& force, const ParticleSystem<Real>& s, Ve
   return sink.potential();
 }
 
-/// Largest differences between what a force gives and the slopes of its energy, each over the largest it gives.
+/// Largest differences between what a force gives and the slopes of its energy, each over the largest of both.
 struct SlopeErrors {
   double force = 0, torque = 0;
 };
@@ -35,18 +35,18 @@ template <class Real> struct SlopeError {
   bool finite = true;
 
   /// @param at  at(m): the energy m steps of length `h` away
+  /// @param here  the energy itself
   /// @param rounding  what rounding of an energy of 1 leaves open
-  template <class At>
-  void ask(const Real& given, const At& at, const Real& h, const Real& energy, const Real& rounding) {
+  template <class At> void ask(const Real& given, const At& at, const Real& h, const Real& here, const Real& rounding) {
     using std::abs, std::isfinite;
     const Real up[3] = {at(1), at(2), at(3)}, down[3] = {at(-1), at(-2), at(-3)};
     const Real slope =
         (Real(45) * (up[0] - down[0]) - Real(9) * (up[1] - down[1]) + (up[2] - down[2])) / (Real(60) * h);
-    const Real difference = abs(given + slope), here = at(0);
+    const Real difference = abs(given + slope);
     finite = finite && isfinite(difference);  // std::max would drop a NaN
-    worst = std::max(worst, Real(difference - rounding * energy / h));
+    worst = std::max(worst, Real(difference - rounding * abs(here) / h));
     largest = std::max(largest, Real(abs(given)));
-    // Where nothing was given, a slope that is more than what rounding leaves of a minimum counts.
+    // A force that is missing is wrong by all of the slope; at a minimum the slope is rounding, beside what bends.
     if (abs(slope) * h > Real(1e-6) * (abs(up[2] - here) + abs(down[2] - here)))
       largest = std::max(largest, Real(abs(slope)));
   }
@@ -56,7 +56,7 @@ template <class Real> struct SlopeError {
   }
 };
 
-/// Turns body `i` about an axis of space.
+/// An orientation after a turn about an axis of space.
 template <class Real> Quaternion<Real> turned(const Quaternion<Real>& q, int axis, const Real& angle) {
   using std::cos, std::sin;
   Vec3<Real> along = Vec3<Real>::Zero();
@@ -70,13 +70,13 @@ template <class Real> Quaternion<Real> turned(const Quaternion<Real>& q, int axi
 template <class Real>
 SlopeErrors errors_by_differences(AnyForce<Real> force, ParticleSystem<Real> s, const Real& relative_step,
                                   const Real& rounding) {
-  using std::abs, std::sqrt;
+  using std::sqrt;
   bind_force(force, s);
   VectorColumn<Real> a(s.size()), torque(has_bodies(s) ? s.size() : 0), scratch(s.size());
   ForceSink<Real> sink(a, s, {.energy = true});
   if (has_bodies(s)) sink.set_torques(torque);
   force.add_to(sink, s);
-  const Real energy = abs(sink.potential());
+  const Real here = sink.potential();
   Real scale = sum_over<Real>(s.size(), [&](Index i) { return norm2(std::as_const(s).positions()[i]); });
   const auto n = static_cast<double>(s.size());
   scale = sqrt(scale / Real(n)) / Real(std::cbrt(n));
@@ -95,7 +95,7 @@ SlopeErrors errors_by_differences(AnyForce<Real> force, ParticleSystem<Real> s, 
         s.positions().component(k)[i] = x;
         return u;
       };
-      forces.ask(s.masses()[i] * std::as_const(a).component(k)[i], at, h, energy, open);
+      forces.ask(s.masses()[i] * std::as_const(a).component(k)[i], at, h, here, open);
     }
     if (!has_bodies(s) || turning_freedoms<Real>(std::as_const(s).template column<BodyInertia>()[i]) == 0) continue;
     const Quaternion<Real> q = std::as_const(s).template column<BodyOrientation>()[i];
@@ -107,7 +107,7 @@ SlopeErrors errors_by_differences(AnyForce<Real> force, ParticleSystem<Real> s, 
         orientation.set(i, q);
         return u;
       };
-      torques.ask(std::as_const(torque).component(k)[i], at, relative_step, energy, open);
+      torques.ask(std::as_const(torque).component(k)[i], at, relative_step, here, open);
     }
   }
   return {forces.relative(), torques.relative()};

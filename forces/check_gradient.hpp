@@ -9,9 +9,9 @@ namespace noether {
 /// At how many particles `gradient_error` asks.
 Index particles_asked(Index particles);
 
-/// How far the force is from minus the gradient of the energy it reports: largest difference over largest force; of
-/// rigid bodies also how far torques are from minus the slopes of the energy as each turns, over the largest torque,
-/// where that is more. Infinite if any of them is not finite.
+/// How far the force is from minus the gradient of the energy it reports: largest difference over largest force or
+/// slope; of rigid bodies also how far torques are from minus the slopes of the energy as each turns, over the largest
+/// one, where that is more. Infinite if any of them is not finite.
 ///
 /// Of up to 64 particles in Quad (error of the differences about 1e-20) if the force is a template on the number type,
 /// else in double (1e-7, near a cutoff that is not smooth).

@@ -51,7 +51,8 @@ struct Tides {
   static constexpr auto describe() {
     return part<Tides>(
         "tides", "tides of rigid bodies with a constant time lag: the dissipative letter T",
-        formula("force on j = - f [(1 + 2 tau r.v/r^2) r + tau (v - Omega x r)],  f = 3 G k2 m_j^2 R^5/r^8"),
+        formula("force on j = - f [(1 + 2 tau r.v/r^2) r + tau (v - Omega x r)],  f = 3 G k2 m_j^2 R^5/r^8;  k2 = "
+                "love_number, R = radius, tau = tide_lag of i"),
         source("Mignard1979, Hut1981"), letter('T', "step of the implicit midpoint rule of the tides"),
         field<&Tides::G>("G", "length^3/mass/time^2", "default: the unit system's own"));
   }

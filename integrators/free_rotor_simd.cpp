@@ -38,13 +38,11 @@ struct Turning {
 };
 
 /// The angular momenta in the bodies.
-NOETHER_EIGHT_INLINE void spin_in_body(const Eight (&q)[4], const Eights& s, Eight (&to)[3]) {
-  const Eight &w = q[0], &x = q[1], &y = q[2], &z = q[3], two(2);
-  const Eight ww = w * w, xx = x * x, yy = y * y, zz = z * z;
-  const Eight xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
-  to[0] = (ww + xx - yy - zz) * s.x + two * (xy + wz) * s.y + two * (xz - wy) * s.z;
-  to[1] = two * (xy - wz) * s.x + (ww - xx + yy - zz) * s.y + two * (yz + wx) * s.z;
-  to[2] = two * (xz + wy) * s.x + two * (yz - wx) * s.y + (ww - xx - yy + zz) * s.z;
+NOETHER_EIGHT_INLINE void spin_in_body(const Eight (&q)[4], const Eights& spin, Eight (&to)[3]) {
+  const EightRotations r = rotations(q[0], q[1], q[2], q[3]);
+  to[0] = dot({r.row[0].x, r.row[1].x, r.row[2].x}, spin);
+  to[1] = dot({r.row[0].y, r.row[1].y, r.row[2].y}, spin);
+  to[2] = dot({r.row[0].z, r.row[1].z, r.row[2].z}, spin);
 }
 
 /// Turns them about axis `k` by twice the angle `half`.
@@ -86,7 +84,7 @@ std::ptrdiff_t by_axes(const TurningColumns& bodies, double h, const int* order,
     const auto about = [&]<int k>(bool whole) __attribute__((always_inline)) {
       const Eight along = t.in_body[k], half = along * (whole ? per_spin[k] : per_spin[k] / Eight(2));
       action = action + along * half;
-      widest = eight_of([&](int r) { return widest.r[r] > absolute(half).r[r] ? widest.r[r] : absolute(half).r[r]; });
+      widest = larger(widest, absolute(half));
       turn_about<k>(t, half, sense);
     };
     about.template operator()<0>(false);

@@ -254,7 +254,10 @@ void compare_constants(const Hdf5File& a, const Hdf5File& b, RunComparison& resu
                                          : "both are"));
   }
   const auto knows_no_bodies = [](const Hdf5File& file) {
-    return file.has(particles_path + "/orientation") && !file.has(bodies_path + "/kind");
+    for (const std::string_view column : {BodyOrientation::name, BodySpin::name, BodyInertia::name}) {
+      if (!file.has(particles_path + "/" + std::string(column))) return false;
+    }
+    return !file.has(bodies_path + "/kind");
   };
   const bool bodies = !knows_no_bodies(a) && !knows_no_bodies(b);
   if (!bodies) {

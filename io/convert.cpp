@@ -215,8 +215,7 @@ void convert_to_bodies(const std::filesystem::path& file, const std::filesystem:
   }
   if (options.unwrapped) throw Error("--bodies keeps the particles in their box; leave out --unwrapped");
   const FrameParticles start = read_frame_particles(file, {.frame = options.frame});
-  const auto& left_out = start.left_out;
-  if (std::find(left_out.begin(), left_out.end(), BodyOrientation::name) != left_out.end()) {
+  if (start.lost_bodies) {
     throw Error(fmt::format("'{}' has rigid bodies, and is from a version that did not store what they are made "
                             "of; start from its scene",
                             file.string()),

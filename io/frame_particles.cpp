@@ -91,8 +91,7 @@ void check_stored(const TrajectoryReader& reader, const StoredFrame& stored, con
                              stored.number, stored.frame.step));
   }
   const Hdf5File& file = reader.file();
-  if (file.has_attribute("/noether", constants_attribute) &&
-      file.text_attribute("/noether", constants_attribute) != constants_digest(file))
+  if (constants_differ(file))
     refuse_frame("damaged: the ids, names, masses, types, bonds or parameters differ from those that were written");
   for (const std::vector<double>* numbers :
        {&stored.frame.positions, &stored.frame.velocities, &stored.shared.masses}) {
@@ -175,12 +174,17 @@ template <class Number> Vec3<Number> row_of(const std::vector<Number>& numbers, 
   return {numbers.at(at), numbers.at(at + 1), numbers.at(at + 2)};
 }
 
-/// Whether the new run has room for a column: the charge always, those of rigid bodies where it is known what they are
-/// made of, others where it declares them.
-bool has_room_for(const ColumnInfo& info, const FrameOptions& options, bool bodies) {
+/// Whether there are rigid bodies, though the file may not say what they are made of: they have all three columns.
+bool has_rigid_bodies(const StoredFrame& stored) {
+  return std::all_of(columns_of_bodies().begin(), columns_of_bodies().end(), [&](const ColumnInfo& one) {
+    const auto found = stored.columns.find(one.name);
+    return found != stored.columns.end() && found->second.info.width == one.width;
+  });
+}
+
+/// Whether the new run has room for a column: the charge always, others where it declares them.
+bool has_room_for(const ColumnInfo& info, const FrameOptions& options) {
   const auto is_it = [&](const ColumnInfo& one) { return one.name == info.name && one.width == info.width; };
-  const std::vector<ColumnInfo>& of_bodies = columns_of_bodies();
-  if (std::any_of(of_bodies.begin(), of_bodies.end(), is_it)) return bodies;
   if (!options.columns || info.name == Charge::name) return true;
   return std::any_of(options.columns->begin(), options.columns->end(), is_it);
 }
@@ -192,20 +196,22 @@ ColumnInfo declared(const ColumnInfo& info, const FrameOptions& options) {
       if (one.name == info.name && one.width == info.width) return one;
     }
   }
-  for (const ColumnInfo& one : columns_of_bodies()) {
-    if (one.name == info.name && one.width == info.width) return one;
-  }
   return info.name == Charge::name && info.width == 1 ? column_info<Charge>() : info;
 }
 
 void give_columns(const StoredFrame& stored, const FrameOptions& options, FrameParticles& result) {
   ParticleSystem<double>& s = result.particles;
+  const bool rigid = has_rigid_bodies(stored);
+  result.lost_bodies = rigid && stored.bodies == nullptr;
   for (const auto& [name, column] : stored.columns) {
-    if (!has_room_for(column.info, options, stored.bodies != nullptr)) {
+    const auto of_body = std::find_if(columns_of_bodies().begin(), columns_of_bodies().end(),
+                                      [&, called = name](const ColumnInfo& one) { return one.name == called; });
+    const bool is_of_body = rigid && of_body != columns_of_bodies().end();
+    if (is_of_body ? stored.bodies == nullptr : !has_room_for(column.info, options)) {
       result.left_out.push_back(name);
       continue;
     }
-    const ColumnInfo info = declared(column.info, options);
+    const ColumnInfo info = is_of_body ? *of_body : declared(column.info, options);
     s.add_column(info);
     const auto width = static_cast<std::size_t>(info.width);
     for (Index i = 0; i < s.size(); ++i) {
@@ -281,6 +287,7 @@ FrameParticles read_frame_particles(const std::filesystem::path& file, const Fra
                         .sha256 = stored.sha256,
                         .scene_toml = stored.scene_toml,
                         .left_out = {},
+                        .lost_bodies = false,
                         .knows_types = stored.knows_types};
   fill(stored, options, file, result);
   return result;

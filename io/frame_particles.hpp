@@ -27,6 +27,7 @@ struct FrameParticles {
   std::string sha256;                 ///< of the frame and of what its particles have once, 64 hexadecimal digits
   std::string scene_toml;             ///< of its run
   std::vector<std::string> left_out;  ///< columns of the file that the new run does not declare
+  bool lost_bodies = false;           ///< there are rigid bodies, but the file does not say what they are made of
   bool knows_types = true;            ///< false: the file is from before types and bonds stood in such files
 };
 

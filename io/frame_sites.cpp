@@ -14,15 +14,16 @@
 namespace noether::io {
 
 bool FrameSites::are_in(const TrajectoryReader& reader) {
-  if (!reader.file().has(bodies_path + "/site_kind")) {
-    const Hdf5File& file = reader.file();
-    const bool differs = file.has_attribute("/noether", constants_attribute) &&
-                           file.text_attribute("/noether", constants_attribute) != constants_digest(file);
-    if (differs && reader.shared().columns.contains("orientation"))
+  const Hdf5File& file = reader.file();
+  const auto& moving = reader.shared().columns;
+  if (!moving.contains(std::string(BodyOrientation::name)) || !moving.contains(std::string(BodySpin::name)))
+    return false;
+  if (!file.has(bodies_path + "/site_kind")) {
+    if (constants_differ(file))
       throw FileError("damaged: what rigid bodies are made of differs from what was written", {.file = file.name()});
     return false;
   }
-  const std::vector<std::int64_t> kinds = reader.file().open(bodies_path + "/site_kind").read_integers();
+  const std::vector<std::int64_t> kinds = file.open(bodies_path + "/site_kind").read_integers();
   return std::adjacent_find(kinds.begin(), kinds.end()) != kinds.end();
 }
 
@@ -60,8 +61,8 @@ Frame FrameSites::frame(const Frame& of_bodies) {
   };
   take(of_bodies.positions, bodies_.positions());
   take(of_bodies.velocities, bodies_.velocities());
-  take(of_bodies.columns.at("orientation"), bodies_.column<BodyOrientation>());
-  take(of_bodies.columns.at("spin"), bodies_.column<BodySpin>());
+  take(of_bodies.columns.at(std::string(BodyOrientation::name)), bodies_.column<BodyOrientation>());
+  take(of_bodies.columns.at(std::string(BodySpin::name)), bodies_.column<BodySpin>());
   for (Index i = 0; i < bodies_.images().size(); ++i) {
     const auto row = static_cast<std::size_t>(order_[static_cast<std::size_t>(i)]);
     for (std::size_t k = 0; k < 3; ++k)

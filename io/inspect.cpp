@@ -214,8 +214,7 @@ void check_samples(const Hdf5File& file, const std::vector<MonitorSeries>& all, 
 
 /// Ids, names, masses, types, bonds and what else particles have once.
 void check_constants(const Hdf5File& file, std::vector<std::string>& damaged) {
-  if (!file.has_attribute("/noether", constants_attribute)) return;
-  if (file.text_attribute("/noether", constants_attribute) == constants_digest(file)) return;
+  if (!constants_differ(file)) return;
   damaged.emplace_back(
       "the ids, names, masses, types, bonds or parameters of the particles differ from those that were written");
 }

@@ -76,6 +76,11 @@ std::string constants_digest(const Hdf5File& file) {
   return hash.hex();
 }
 
+bool constants_differ(const Hdf5File& file) {
+  return file.has_attribute("/noether", constants_attribute) &&
+         file.text_attribute("/noether", constants_attribute) != constants_digest(file);
+}
+
 namespace {
 
 /// Walks through a file: the path of an object, each of its attributes, then all that is below it.
@@ -104,8 +109,9 @@ std::string headers_digest(const Hdf5File& file, int version) {
   RunningDigest hash;
   hash.add("noether-attributes-" + std::to_string(version) + '\n');
   const auto add = [&](const std::string& one) { hash.add(one + '\n'); };
-  for (const std::string& group :
-       {std::string("/h5md"), particles_path, system_path, connectivity_path, topology_path}) {
+  std::vector<std::string> groups = constant_groups();
+  groups.insert(groups.begin(), "/h5md");
+  for (const std::string& group : groups) {
     if (file.has(group)) HeaderWalk(file, add).at(group);
   }
   for (const char* name : {"commit", "simd", "units", "version"}) add(file.attribute_bytes("/noether", name));

@@ -22,6 +22,9 @@ inline std::string sample_digests_path(std::string_view monitor) {
 /// The attribute of /noether that has the digest of what stands in the file once and never changes.
 inline const std::string constants_attribute = "constants_sha256";
 
+/// Whether a file has other constants than those whose digest was written with it; false where none was.
+bool constants_differ(const Hdf5File& file);
+
 /// The attribute of /noether that has the digest of the attributes that never change.
 inline const std::string headers_attribute = "attributes_sha256";
 

@@ -109,10 +109,7 @@ template <class Real> AtomCount atoms_of(const ParticleSystem<Real>& s, const In
   const auto all = s.masses().all().array();
   const auto massive = static_cast<std::int64_t>((all > Real(0)).count());
   count.atoms = massive;
-  for (Index i = 0; has_bodies(s) && i < s.size(); ++i) {  // the sites of bodies are atoms
-    const BodyKind* kind = s.bodies()->kind(i);
-    if (kind != nullptr && s.masses()[i] > Real(0)) count.atoms += kind->massive_sites() - 1;
-  }
+  if (has_bodies(s)) count.atoms += s.bodies()->sites_beyond_one();
   if (!reduced) {
     count.freedom = 3 * massive + turning_freedoms(s) - claims.constraints - (claims.keeps_momentum ? 3 : 0);
   }
@@ -297,7 +294,9 @@ MonitorReport VectorInvariant::report() const {
   report.scale = scale_;
   fill_line(report, errors_, per_time("1", time_unit_));
   if (has_direction()) report.note = fmt::format("direction within {:.2g} rad", worst_direction_);
-  if (!kept_) report.note += fmt::format("{}not conserved by the forces of this run", report.note.empty() ? "" : "; ");
+  if (!kept_)
+    report.note +=
+        fmt::format("{}not conserved by the forces or the method of this run", report.note.empty() ? "" : "; ");
   return report;
 }
 

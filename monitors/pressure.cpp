@@ -1,6 +1,7 @@
 #include "monitors/pressure.hpp"
 
 #include "engine/sums.hpp"
+#include "monitors/series_report.hpp"
 
 #include <fmt/format.h>
 
@@ -57,15 +58,9 @@ std::vector<Series> Pressure::series() const {
 }
 
 MonitorReport Pressure::report() const {
-  MonitorReport report;
-  report.samples = values_.samples();
+  MonitorReport report = report_of(values_, slope_unit_);
   if (report.samples == 0) return report;
-  report.first = values_.first();
-  report.last = values_.last();
-  report.rms = values_.rms();
-  report.slope = values_.slope();
-  if (const auto line = values_.line()) report.slope_error = line->error;
-  report.slope_unit = slope_unit_;
+  report.worst.reset();
   report.note = fmt::format("mean {:.6g}", values_.mean());
   if (const auto error = values_.mean_error()) report.note += fmt::format(" +- {:.1g}", *error);
   if (unit_ != "1") report.note += " " + unit_;

@@ -2,6 +2,7 @@
 
 #include "engine/bodies.hpp"
 #include "engine/orbital_elements.hpp"
+#include "monitors/series_report.hpp"
 #include "numbers/suggest.hpp"
 
 #include <fmt/format.h>

@@ -3,6 +3,7 @@
 #include "engine/bodies.hpp"
 #include "engine/moments.hpp"
 #include "engine/sums.hpp"
+#include "monitors/series_report.hpp"
 
 #include <limits>
 
@@ -40,12 +41,8 @@ MonitorReport Temperature::report() const {
     report.reason = "there is no degree of freedom left to have a temperature";
     return report;
   }
-  report.first = values_.first();
-  report.last = values_.last();
-  report.rms = values_.rms();
-  report.slope = values_.slope();
-  if (const auto line = values_.line()) report.slope_error = line->error;
-  report.slope_unit = slope_unit_;
+  report = report_of(values_, slope_unit_);
+  report.worst.reset();
   report.note = "of " + std::to_string(freedom_) + " degrees of freedom";
   return report;
 }

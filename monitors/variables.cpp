@@ -1,5 +1,6 @@
 #include "monitors/variables.hpp"
 
+#include "monitors/series_report.hpp"
 #include "numbers/suggest.hpp"
 
 #include <fmt/format.h>

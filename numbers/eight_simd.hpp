@@ -87,6 +87,10 @@ NOETHER_EIGHT_INLINE Eight absolute(const Eight& a) {
 NOETHER_EIGHT_INLINE Eight smaller(const Eight& a, const Eight& b) {
   return eight_of([&](int k) { return a.r[k] < b.r[k] ? a.r[k] : b.r[k]; });
 }
+/// The larger one of each lane; b where one is not a number.
+NOETHER_EIGHT_INLINE Eight larger(const Eight& a, const Eight& b) {
+  return eight_of([&](int k) { return a.r[k] > b.r[k] ? a.r[k] : b.r[k]; });
+}
 /// A bit for each lane where a <= b does not hold.
 NOETHER_EIGHT_INLINE unsigned exceeding(const Eight& a, const Eight& b) {
   unsigned lanes = 0;
@@ -248,6 +252,17 @@ NOETHER_EIGHT_INLINE Eight dot(const Eights& a, const Eights& b) { return (a.x *
 NOETHER_EIGHT_INLINE Eights operator+(const Eights& a, const Eights& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 NOETHER_EIGHT_INLINE Eights operator-(const Eights& a, const Eights& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 NOETHER_EIGHT_INLINE Eights operator*(const Eight& a, const Eights& b) { return {a * b.x, a * b.y, a * b.z}; }
+/// Rotations of eight bodies as matrices, from unit quaternions: those of `rotation_matrix` to the bit.
+struct EightRotations {
+  Eights row[3];
+};
+NOETHER_EIGHT_INLINE EightRotations rotations(const Eight& w, const Eight& x, const Eight& y, const Eight& z) {
+  const Eight two(2.0), ww = w * w, xx = x * x, yy = y * y, zz = z * z;
+  const Eight xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
+  return {{{ww + xx - yy - zz, two * (xy - wz), two * (xz + wy)},
+           {two * (xy + wz), ww - xx + yy - zz, two * (yz - wx)},
+           {two * (xz - wy), two * (yz + wx), ww - xx - yy + zz}}};
+}
 template <int n> NOETHER_EIGHT_INLINE Eights rotate(const Eights& a) {
   return {rotate<n>(a.x), rotate<n>(a.y), rotate<n>(a.z)};
 }

@@ -199,6 +199,7 @@ class BodyTables {
         options_(std::move(options)),
         warnings_(warnings),
         s_(std::move(s)),
+        bodies_(s_.bodies() != nullptr ? *s_.bodies() : Bodies{}),
         typed_(reader, effective, s_.size()) {
     for (const ColumnInfo& column : reader.context().columns) s_.add_column(column);
     for (Index i = 0; i < s_.size(); ++i) note(i);
@@ -223,6 +224,7 @@ class BodyTables {
 
   ParticleSystem<double> take() {
     typed_.give_to(s_, reader_);
+    if (!bodies_.kinds.empty()) s_.set_bodies(std::make_shared<const Bodies>(std::move(bodies_)));
     return std::move(s_);
   }
 
@@ -275,12 +277,11 @@ class BodyTables {
       std::tie(turn.x, turn.v) = state_of(body, made.mass);
     }
     try {
-      add_body_to(made, turn);
+      noether::add_body(s_, bodies_, made, turn);
     } catch (const Error& error) {
       body.refuse(error);
     }
   }
-  void add_body_to(const RigidBody& body, const BodyState& state) { noether::add_body(s_, body, state); }
 
   /// Refuses keys by which others call elements, with what they mean here: "om" is nearest to M, and means Omega.
   static void refuse_other_names(const TableReader& body, const std::vector<ColumnInfo>& columns) {
@@ -408,6 +409,7 @@ class BodyTables {
   BodyTableOptions options_;
   std::vector<std::string>& warnings_;
   ParticleSystem<double> s_;
+  Bodies bodies_;  ///< of the particles, until they get them
   TypedBodies typed_;
   std::unordered_map<std::string, Index> index_;
   OrbitCenter before_;  ///< of all bodies so far

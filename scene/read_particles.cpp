@@ -104,12 +104,12 @@ ParticleSystem<double> from_frame(TableReader& reader, const std::filesystem::pa
         fmt::format("{} is from a version that did not store types, molecules and bonds: its particles have none here",
                     reader.text("bodies")));
   }
+  if (found.lost_bodies) {
+    reader.fail("bodies", fmt::format("{} has rigid bodies, and is from a version that did not store what they are "
+                                      "made of; start from its scene",
+                                      reader.text("bodies")));
+  }
   for (const std::string& name : found.left_out) {
-    if (name == BodyOrientation::name) {
-      reader.fail("bodies", fmt::format("{} has rigid bodies, and is from a version that did not store what they are "
-                                        "made of; start from its scene",
-                                        reader.text("bodies")));
-    }
     warnings.push_back(
         fmt::format("no part of this scene uses the column '{}' of {}: it is left out", name, reader.text("bodies")));
   }

@@ -296,7 +296,7 @@ std::string warning_of(const Encounter& encounter, const std::string& hamiltonia
                                               encounter_hill_radii, encounter.since, unit);
   return fmt::format(
       "{} and {} came within {:.2g} Hill radii of each other at time {:.6g}{}{}; {} does not follow such "
-      "encounters, so use a method whose steps shrink in them, such as 'gauss_radau_15'",
+      "encounters, so use a method whose steps shrink in them, such as 'gauss_8'",
       name(encounter.first), name(encounter.second), encounter.hill_radii, encounter.time, unit, first, hamiltonian);
 }
 

@@ -140,7 +140,6 @@ void use_finest_run(Comparison& c, const PositionError& error) {
     double worst = 0;
     for (std::size_t j = 0; j < fine.track.y.size() && j < next.track.y.size(); ++j) {
       worst = std::max(worst, error(next.track.state(j), fine.track.state(j)));
-      if (error.any_turns()) worst = std::max(worst, error.turned_apart(next.track.state(j), fine.track.state(j)));
     }
     if (worst < least) {
       least = worst;

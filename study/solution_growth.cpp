@@ -11,7 +11,8 @@ void SolutionGrowth::look(double time, double budget, const Bounds& bounds) {
   if (leaves_ || !(time > known_)) return;
   known_ = time;  // asked once: what takes too long, or has no reference, explains nothing
   try {
-    // Bodies that turn have no y' = f: a splitting of order 8 follows them, in an eighth of the scene's steps.
+    // Bodies that turn have no y' = f: a splitting of order 8 follows them, with steps an eighth as long
+    // as the scene's; with tides, which cannot go back, nothing does.
     const bool turns = has_bodies(scene_.particles);
     const double step = turns ? std::abs(scene_.integrator.step) / 8 : 0;
     const Candidate who = candidate(scene_, turns ? "kahan_li_8_s17" : "dop853");

@@ -274,7 +274,7 @@ std::optional<double> recommended(const StabilityRow& row, double scale, const s
   const LinearTheory& theory = row.theory;
   double z = theory.accurate > 0 ? theory.accurate : M_PI / 10;
   if (kepler) z = kepler->recommended() * scale;
-  if (turning && turning->by_axes) z = std::min(z, turning->recommended() * scale);
+  if (turning && turning->recommended()) z = std::min(z, *turning->recommended() * scale);
   for (const auto& limit : {row.limit_h_omega, theory.limit}) {
     if (limit) z = std::min(z, *limit / 2);
   }
@@ -383,8 +383,8 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
       row.recommended_step = recommended(row, scale, kepler, found.turning);
     } else {
       if (row.limit_step) row.recommended_step = *row.limit_step / 2;
-      if (found.turning && found.turning->by_axes)
-        row.recommended_step = std::min(row.recommended_step.value_or(INFINITY), found.turning->recommended());
+      if (const auto rule = found.turning ? found.turning->recommended() : std::nullopt)
+        row.recommended_step = std::min(row.recommended_step.value_or(*rule), *rule);
       row.limit_h_omega.reset();
       row.gap_end.reset();
       row.bounded_until.reset();

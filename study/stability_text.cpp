@@ -27,7 +27,7 @@ Json json_of(const TurningSteps& turning) {
   return Json::object({{"period", turning.period},
                        {"period_of", turning.body},
                        {"rotor", turning.by_axes ? "axes" : "exact"},
-                       {"rule_recommended_step", turning.by_axes ? Json(turning.recommended()) : Json()}});
+                       {"rule_recommended_step", Json(turning.recommended())}});
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ std::vector<std::string> turning_lines(const Stability& found) {
   const std::string rule = turning.by_axes ? fmt::format(
                                                  "20 steps in it, at most {:.4g}{}, are a rule for turns axis by "
                                                  "axis",
-                                                 turning.recommended(), unit)
+                                                 *turning.recommended(), unit)
                                            : "exact turns follow it at any step";
   return {fmt::format("{} turns fastest, once in {:.6g}{}: {}", turning.body, turning.period, unit, rule)};
 }

@@ -14,8 +14,9 @@ struct TurningSteps {
   std::string body = {};  ///< that turns so
   bool by_axes = false;   ///< turns are maps of order 2, not exact
 
-  /// A rule and no limit: turns axis by axis have the errors of leapfrog, which takes 20 steps in a period [time].
-  double recommended() const { return period / 20; }
+  /// A rule and no limit: turns axis by axis have the errors of leapfrog, which takes 20 steps in a period; exact ones
+  /// follow at any step [time].
+  std::optional<double> recommended() const { return by_axes ? std::optional(period / 20) : std::nullopt; }
 };
 
 /// @return empty where no body turns

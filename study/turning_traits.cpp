@@ -87,12 +87,10 @@ std::vector<MeasuredTurns> measured_turns() {
 std::string turning_section(const std::vector<MeasuredTurns>& measured) {
   std::string section =
       "\n## turns of rigid bodies\n\n"
-      "Schemes over turns and kicks of a heavy top of three different moments, in 113 bits: the order of the error of "
-      "its "
-      "orientation\nbetween steps of 1/16 and 1/32, kicks per step, and the error at t = 2 with about 60 kicks in a "
-      "unit of "
-      "time. "
-      "Exact turns serve every scheme,\nturns axis by axis those that take a part of order 2.\n\n"
+      "Schemes over turns and kicks of a heavy top of three different moments, in 113 bits: the order of the error of\n"
+      "its orientation between steps of 1/16 and 1/32, kicks per step, and the error at t = 2 with about 60 kicks in "
+      "a\n"
+      "unit of time. Exact turns serve every scheme, turns axis by axis those that take a part of order 2.\n\n"
       "| method | rotor | order | kicks | error |\n|---|---|---|---|---|\n";
   for (const MeasuredTurns& one : measured) {
     const double whole = std::round(one.order);

@@ -16,8 +16,15 @@ namespace noether {
 namespace {
 
 /// Bodies that turn have no y' = f: their truth is the splitting itself, with exact turns whatever rotor the run has.
-void split_bodies(const SceneHamiltonian& h, const ForceField<Quad>& forces, bool beside, WideScene& wide) {
-  if (!h.splitting.only_forces || beside) {
+/// @param beside  forces that are no part of its kicks
+void split_bodies(const SceneHamiltonian& h, const ForceField<Quad>& forces, const ForceField<Quad>& beside,
+                  WideScene& wide) {
+  if (!beside.terms().empty()) {
+    wide.reason = fmt::format("force '{}' depends on velocities, which a reference of rigid bodies does not support",
+                              beside.terms().front().name());
+    return;
+  }
+  if (!h.splitting.only_forces) {
     wide.reason = fmt::format("hamiltonian '{}' of rigid bodies is more than p^2/2m and forces", h.splitting.name);
     return;
   }
@@ -68,7 +75,7 @@ WideScene wide_scene(const Scene& scene) {
   }
   wide.start = scene.particles.as<Quad>();
   if (h.rotating) {
-    split_bodies(h, all, !beside.terms().empty(), wide);
+    split_bodies(h, all, beside, wide);
   } else if (h.splitting.only_forces) {
     wide.field = std::make_unique<ForceMotion<ForceField<Quad>, Quad>>(std::move(all));
   } else if (!h.splitting.make_wide) {

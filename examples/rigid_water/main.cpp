@@ -55,10 +55,8 @@ ParticleSystem<double> two_of_atoms() {
   const ParticleSystem<double> bodies = two_bodies();
   ParticleSystem<double> s = Sites<double>(bodies).particles();
   for (Index i = 0; i < 2; ++i) {
-    const Mat3<double> axes = rotation_matrix<double>(bodies.column<BodyOrientation>()[i]);
-    const Vec3<double> moments = bodies.column<BodyInertia>()[i];
-    const Vec3<double> in_body = to_body<double>(axes, bodies.column<BodySpin>()[i]);
-    const Vec3<double> rate = to_space<double>(axes, in_body.cwiseQuotient(moments));
+    const Vec3<double> rate = angular_velocity<double>(bodies.column<BodyOrientation>()[i],
+                                                       bodies.column<BodySpin>()[i], bodies.column<BodyInertia>()[i]);
     for (Index a = 3 * i; a < 3 * i + 3; ++a) {
       const Vec3<double> arm = s.positions()[a] - bodies.positions()[i];
       s.velocities().set(a, bodies.velocities()[i] + cross<double>(rate, arm));

@@ -289,7 +289,7 @@ std::optional<Failure> EnckeGauss::sweep(VectorField<double>& f, double t, doubl
 }
 
 /// Sums over the stages, for the end. @return a failure if a polynomial of degree 7 does not follow the
-/// run, unless they are too small to matter
+/// perturbations, unless these are too small to matter
 std::optional<Failure> EnckeGauss::end_stages(double h) {
   constexpr double negligible = 1e-14 * 1e-14, rough = rough_perturbations * rough_perturbations;
   for (std::size_t e = 0; e < eights_.size(); ++e) {

@@ -8,9 +8,6 @@ namespace {
 
 constexpr std::ptrdiff_t stages = 8;
 
-NOETHER_EIGHT_INLINE Eight larger(const Eight& a, const Eight& b) {
-  return eight_of([&](int k) { return a.r[k] > b.r[k] ? a.r[k] : b.r[k]; });
-}
 NOETHER_EIGHT_INLINE double largest_lane(const Eight& a) {
   const Eight four = larger(a, rotate<4>(a)), two = larger(four, rotate<2>(four));
   return larger(two, rotate<1>(two)).r[0][0];

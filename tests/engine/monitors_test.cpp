@@ -188,7 +188,7 @@ TEST_CASE("a direction that turns is told, as the closed form says", "[monitors]
   const Quad change = sqrt(Quad(0.3125));  // of (1/4, -1/2, 0); every number before it is a double
   CHECK(angular.worst_direction() == static_cast<double>(atan2(change, Quad(1))));
   CHECK(angular.worst() == static_cast<double>(change));
-  CHECK(angular.report().note == "direction within 0.51 rad; not conserved by the forces of this run");
+  CHECK(angular.report().note == "direction within 0.51 rad; not conserved by the forces or the method of this run");
 }
 
 TEST_CASE("an energy that is 0 because nothing has mass says nothing, and says so", "[monitors]") {

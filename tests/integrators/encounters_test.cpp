@@ -188,7 +188,7 @@ TEST_CASE("a run says in one line who met whom, when, and how closely", "[encoun
   CHECK(
       warning_of(once, "wisdom_holman", s, unit_system("reduced")) ==
       "'inner' and 'outer' came within 0.42 Hill radii of each other at time 12.5; wisdom_holman does not follow such "
-      "encounters, so use a method whose steps shrink in them, such as 'gauss_radau_15'");
+      "encounters, so use a method whose steps shrink in them, such as 'gauss_8'");
   Encounter later = once;
   later.since = 3.25;
   later.second = 77;
@@ -196,7 +196,7 @@ TEST_CASE("a run says in one line who met whom, when, and how closely", "[encoun
       warning_of(later, "democrat", s, unit_system("solar")) ==
       "'inner' and a body that is gone (id 77) came within 0.42 Hill radii of each other at time 12.5 day, and bodies "
       "within 2 for the first time at time 3.25 day; democrat does not follow such encounters, so use a method "
-      "whose steps shrink in them, such as 'gauss_radau_15'");
+      "whose steps shrink in them, such as 'gauss_8'");
 }
 
 TEST_CASE("a run says how many steps had bodies too near to each other for their method", "[encounter]") {

@@ -436,7 +436,7 @@ TEST_CASE(
   for (const RoundOff* errors : {&early, &middle, &late}) {
     CHECK(within_errors(errors->energy));
   }
-  CHECK(std::fabs(middle.longitude.mean) < 5 * middle.longitude.error);  // 3 of so few would be missed in 2 %
+  CHECK(std::fabs(middle.longitude.mean) < 3 * middle.longitude.error);
   CHECK(std::fabs(late.energy.mean) / 1e7 < 5e-20);
   CHECK(late.energy.error / 1e7 < 1e-20);
   CHECK(late.energy.median < of_whfast512 * std::sqrt(1e7));

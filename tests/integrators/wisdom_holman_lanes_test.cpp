@@ -57,7 +57,7 @@ std::vector<Course> courses() {
 
 }  // namespace
 
-TEST_CASE("a step in lanes is the step of 113 bits to rounding, for 1 to 20 planets of any shape", "[wisdom_holman]") {
+TEST_CASE("a step in lanes is the step of 113 bits to rounding, for 1 to 30 planets of any shape", "[wisdom_holman]") {
   std::mt19937_64 random(17);
   const GrPotential relativity{};
   for (const Coordinates coordinates : in_lanes) {
@@ -65,7 +65,7 @@ TEST_CASE("a step in lanes is the step of 113 bits to rounding, for 1 to 20 plan
     for (const bool bent : {false, true}) {
       Roundings lanes, letters;
       for (int trial = 0; trial < 100; ++trial) {
-        const auto s = random_planets(1 + trial % 20, random, false, trial % 4 == 0 ? 5 : 0);
+        const auto s = random_planets(1 + trial % 30, random, false, trial % 4 == 0 ? 5 : 0);
         const double dt =
             std::exp(std::log(40.0) * std::uniform_real_distribution<double>(0, 1)(random)) * (trial % 3 == 0 ? -1 : 1);
         const Scheme& scheme = trial % 2 == 0 ? schemes::verlet : schemes::verlet_aba;
@@ -84,7 +84,7 @@ TEST_CASE("a step in lanes is the step of 113 bits to rounding, for 1 to 20 plan
               letters.sum / letters.count);
       CHECK(lanes.sum < 2 * letters.sum);
       CHECK(lanes.worst < 10 * letters.worst);
-      CHECK(lanes.worst < 500);
+      CHECK(lanes.sum < 6 * lanes.count);
     }
   }
 }

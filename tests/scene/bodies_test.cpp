@@ -265,7 +265,10 @@ TEST_CASE("a site has the charge that it is given, 0 too, else that of its type"
       "[[particles.type]]\nname = 'Q'\nmass = 1\ncharge = -1\nepsilon = 1\nsigma = 1\n"
       "[[particles.rigid_body]]\nname = 'pair'\nlinear = true\nx = [0, 0, 0]\nv = [0, 0, 0]\n";
   const auto charges = [&](const std::string& sites, const std::string& file = "") {
-    const Scene scene = BodyScene(head + sites, file, "reduced").scene();
+    const std::string pairs =
+        "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = "
+        "'lennard_jones'\ncutoff = 2.5\n[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 1\n";
+    const Scene scene = BodyScene(head + sites, file, "reduced", pairs).scene();
     const std::vector<BodySite>& found = scene.particles.bodies()->kinds.at(0).sites;
     // The scene as it is stored has the same.
     const ScratchFolder folder;
