@@ -31,6 +31,10 @@ struct alignas(64) PlanetRow : ArcRow {
   double without_arc[8];  ///< Jacobi: mu_k; 0 of the innermost
   double relativity[8];   ///< 6 (G m_0/c)^2 m_k; 0 without general relativity
   double force[3][8];     ///< of the last kick
+
+  // Of kernels, which look at forces beside x or along a direction.
+  double along[3][8];    ///< the direction, in Jacobi coordinates
+  double y_along[3][8];  ///< the same relative to the star
 };
 
 /// Constants of the pairs of two rows, or of one row with itself: line n is of lane i and lane i + n in a ring,

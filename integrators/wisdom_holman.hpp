@@ -174,10 +174,16 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   void inertial_velocities(const VectorColumn<Real>& from, VectorColumn<Real>& to) const;
   bool forces_in_lanes(const ParticleSystem<Real>& s);
   void bind_lanes();
+  /// Whether lanes have a letter: those of kernels where there are no tracers.
+  bool letter_in_lanes(char letter) const {
+    return letter == 'A' || letter == 'B' || (!has_tracers() && (letter == 'G' || letter == 'L'));
+  }
   void watch_for_encounters();
   // Templates, so that an explicit instantiation of a class without lanes leaves them out: clang 14 takes no heed of
   // `requires` there.
   template <class = void> void flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h);
+  template <class = void> void kernel_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h);
+  template <class = void> void note_near();
   template <class = void> void flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h);
   template <class = void> Real action_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h);
   template <class = void> Advance run_in_lanes(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span);

@@ -175,7 +175,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::close(ParticleSystem<
 
 template <class Real, class F> void WisdomHolman<Real, F>::flow(char letter, ParticleSystem<Real>& s, const Real& h) {
   if constexpr (may_have_lanes) {
-    if (lanes_.bound() && (letter == 'A' || letter == 'B')) {
+    if (lanes_.bound() && letter_in_lanes(letter)) {
       flow_in_lanes(letter, s, h);
       return;
     }
@@ -199,12 +199,12 @@ template <class Real, class F> void WisdomHolman<Real, F>::flow(char letter, Par
 
 template <class Real, class F>
 Real WisdomHolman<Real, F>::flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if (letter == 'L') throw LogicError("the letter L has no action");
   if constexpr (may_have_lanes) {
-    if (lanes_.bound() && (letter == 'A' || letter == 'B')) return action_in_lanes(letter, s, h);
+    if (lanes_.bound() && letter_in_lanes(letter)) return action_in_lanes(letter, s, h);
   }
   if (letter == 'A') return arcs(s, h, true);
   if (letter == 'G') return gradient_kick(s, h, true);
-  if (letter == 'L') throw LogicError("the letter L has no action");
   NOETHER_EXPECTS(!velocity_dependent_, "a kick by forces that depend on velocities has no action");
   Real action(0);
   if (!jacobi()) action += jump(s, h / Real(2));

@@ -57,7 +57,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::watch_for_encounters(
 template <class Real, class F>
 Advance WisdomHolman<Real, F>::run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
   if constexpr (may_have_lanes) {
-    const auto in_lanes = [](const TimedStage<Real>& stage) { return stage.letter == 'A' || stage.letter == 'B'; };
+    const auto in_lanes = [&](const TimedStage<Real>& stage) { return letter_in_lanes(stage.letter); };
     const auto& stages = word.stages();
     if (lanes_.bound() && std::all_of(stages.begin(), stages.end(), in_lanes)) return run_in_lanes(word, s, span);
   }
@@ -158,10 +158,30 @@ void WisdomHolman<Real, F>::flow_of_lanes(char letter, ParticleSystem<Real>& s, 
   }
   begin_kick(s);
   moment_ = static_cast<double>(s.clock().time());
+  if (letter != 'B') return kernel_of_lanes(letter, s, h);
   const bool near = lanes_.kick({.h = h, .time = moment_, .noting = noting_}, observing_, path);
   if (observing_) return;
   ++evaluations_.force;
-  if (!near || !noting_) return;
+  if (near && noting_) note_near();
+}
+
+/// The kicks of kernels, as `gradient_kick` and `lazy_kick` make them.
+template <class Real, class F>
+template <class>
+void WisdomHolman<Real, F>::kernel_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) {
+  const Real dt(s.clock().dt());
+  if (!observing_) evaluations_.force += lanes_.knows_forces() && letter == 'G' ? 1 : 2;
+  const bool near = lanes_.accelerate(letter == 'G' ? Real(1) : dt * dt / Real(12));
+  if (near && noting_ && !observing_) note_near();
+  if (letter == 'G') {
+    lanes_.kick_by_gradient(Real(2) * h * dt * dt);
+  } else {
+    lanes_.kick_beside(h);
+  }
+}
+
+/// Takes down encounters of planets in the last kick.
+template <class Real, class F> template <class> void WisdomHolman<Real, F>::note_near() {
   lanes_.for_pairs([&](Index i, Index j, double r2, double nearer2) {
     encounters_.note(std::max(i, j), std::min(i, j), r2, nearer2, moment_, backward_);
   });
@@ -210,6 +230,13 @@ Real WisdomHolman<Real, F>::action_in_lanes(char letter, ParticleSystem<Real>& s
       action += Real(2) * reduced_[i] * g_ * circled_[i] * lanes_.arc(k - 1);
     }
     return action;
+  }
+  if (letter == 'G') {
+    const Real dt(s.clock().dt());
+    flow(letter, s, h);
+    for (std::size_t k = 1; k < massive(); ++k)
+      action += reduced_[static_cast<std::size_t>(at(k))] * norm2(lanes_.along(k - 1));
+    return h * dt * dt * action;
   }
   const bool observing = std::exchange(observing_, true);  // this look at the forces is not counted
   begin_kick(s);

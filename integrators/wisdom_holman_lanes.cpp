@@ -123,6 +123,7 @@ void PlanetLanes::load(const ParticleSystem<double>& s) {
     }
   }
   planet_kernels().prepare(rows());
+  knows_forces_ = false;
 }
 
 void PlanetLanes::store(ParticleSystem<double>& s, bool positions) const {
@@ -147,6 +148,7 @@ Index PlanetLanes::drift(double h, bool on_copy, PlanetPath* path) {
   const bool again = !on_copy && h == last_;
   const ArcTask task{.h = h, .predicted = again && predicted_, .predict = again};
   const ArcReport report = planet_kernels().drift(rows(), task);
+  knows_forces_ = false;
   if (path != nullptr) path->add_arc(task);
   if (!on_copy) {
     predicted_ = again;
@@ -162,7 +164,24 @@ bool PlanetLanes::kick(const Kick& kick, bool on_copy, PlanetPath* path) {
   if (path != nullptr) path->begin_kick(rows(), order_.size(), kick.h, kick.time, predicted, kick.noting);
   const bool near = planet_kernels().kick(rows(), kick.h, predicted);
   if (path != nullptr) path->end_kick(rows(), order_.size(), star_mu_);
+  knows_forces_ = jacobi_;
   return near;
+}
+
+bool PlanetLanes::accelerate(double h) {
+  const bool near = planet_kernels().accelerate(rows(), h, knows_forces_);
+  knows_forces_ = true;
+  return near;
+}
+
+void PlanetLanes::kick_beside(double h) {
+  planet_kernels().kick_beside(rows(), h);
+  knows_forces_ = false;
+}
+
+void PlanetLanes::kick_by_gradient(double h) {
+  planet_kernels().kick_by_gradient(rows(), h);
+  knows_forces_ = false;
 }
 
 void PlanetLanes::give(Predictions& to) const {

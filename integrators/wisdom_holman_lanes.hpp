@@ -68,6 +68,20 @@ class PlanetLanes {
   };
   /// @return whether two planets are so near that they are to be noted
   bool kick(const Kick& kick, bool on_copy, PlanetPath* path = nullptr);
+  /// The accelerations of a kick times h, for the two kicks below; Jacobi coordinates.
+  /// @return whether two planets are so near that they are to be noted; false where the last kick was at the same place
+  bool accelerate(double h);
+  /// The kick over h by the accelerations at x plus what `accelerate` found.
+  void kick_beside(double h);
+  /// The kick by h (a . grad) a, a being what `accelerate` found at the same place.
+  void kick_by_gradient(double h);
+  /// What `accelerate` found for planet k, counted from the innermost.
+  Vec3<double> along(std::size_t k) const {
+    const PlanetRow& row = row_[k / 8];
+    return {row.along[0][k % 8], row.along[1][k % 8], row.along[2][k % 8]};
+  }
+  /// Whether the rows hold the forces at the planets' places.
+  bool knows_forces() const { return knows_forces_; }
   /// Calls note(i, j, r^2, squared distance of the nearer one from the star) for all pairs, as the last kick met them.
   template <class Note> void for_pairs(const Note& note) const {
     for (std::size_t k = 1; k < order_.size(); ++k) {
@@ -116,6 +130,7 @@ class PlanetLanes {
   bool jacobi_ = true, compensated_ = false, relativity_ = false;
   double last_ = 0;         ///< length of the last arcs; 0: none since the prediction was forgotten
   bool predicted_ = false;  ///< `s` of the rows is a prediction for arcs of that length
+  bool knows_forces_ = false;
   std::int64_t second_passes_ = 0, exact_arcs_ = 0;
 };
 

@@ -92,20 +92,33 @@ NOETHER_EIGHT_INLINE bool between_all(const PlanetRows& planets) {
   return near;
 }
 
-/// Jacobi coordinates: the planets' accelerations relative to what is further in, a_k = f_k/m_k + sum_{j >= k}
-/// f_j/M_{k-1}, since the star is pulled by minus the sum of all; and what their arcs have done already.
-template <bool compensated> NOETHER_EIGHT_INLINE bool kick_jacobi(const PlanetRows& planets, double h) {
+/// Vectors of a row relative to the star from those in Jacobi coordinates; `inside` is sum m_j/M_j x'_j of the rows
+/// before, and then of this one too.
+NOETHER_EIGHT_INLINE Eights relative_to_star(const PlanetRows& planets, std::ptrdiff_t a, const Eights& x,
+                                             Eights& inside) {
+  const PlanetRow& row = planets.row[a];
+  const Eights moments = load_eight(row.share) * x;
+  Eights inner{sums_upward(moments.x), sums_upward(moments.y), sums_upward(moments.z)};
+  if (a > 0) inner = inner + inside;
+  if (a + 1 < planets.rows) inside = {last_lane(inner.x), last_lane(inner.y), last_lane(inner.z)};
+  return load_eight(row.rest) * x + inner;
+}
+
+/// Where a kick takes place: at x, or beside it.
+template <bool beside> NOETHER_EIGHT_INLINE Eights place_of(const PlanetRow& row) {
+  const Eights x = load_eights(row.x);
+  if constexpr (beside) return x + load_eights(row.along);
+  return x;
+}
+
+/// Jacobi coordinates: the forces there, into the rows. @return whether two planets are near
+template <bool beside> NOETHER_EIGHT_INLINE bool forces_jacobi(const PlanetRows& planets) {
   unsigned near = 0;
   const PlanetPairs* pairs = planets.pairs;
-  Eights inside{0.0, 0.0, 0.0};  // sum of m_j/M_j x'_j over the rows before
+  Eights inside{0.0, 0.0, 0.0};
   for (std::ptrdiff_t a = 0; a < planets.rows; pairs += planets.rows - a, ++a) {
     PlanetRow& row = planets.row[a];
-    const Eights x = load_eights(row.x);
-    const Eights moments = load_eight(row.share) * x;
-    Eights inner{sums_upward(moments.x), sums_upward(moments.y), sums_upward(moments.z)};
-    if (a > 0) inner = inner + inside;
-    if (a + 1 < planets.rows) inside = {last_lane(inner.x), last_lane(inner.y), last_lane(inner.z)};
-    const Eights y = load_eight(row.rest) * x + inner;
+    const Eights y = relative_to_star(planets, a, place_of<beside>(row), inside);
     store_eights(y, row.y);
     const Eight r2 = dot(y, y);
     const PairSums sums = within_row(*pairs, y, r2);
@@ -121,19 +134,41 @@ template <bool compensated> NOETHER_EIGHT_INLINE bool kick_jacobi(const PlanetRo
     store_eights(sums.force - (sums.back + pull * y), row.force);
   }
   if (planets.rows > 1) near |= unsigned(between_all(planets));
+  return near != 0;
+}
+
+/// Calls take(row, dv) with h times the accelerations by the forces in the rows, relative to what is further in: a_k =
+/// f_k/m_k + sum_{j >= k} f_j/M_{k-1}, since the star is pulled by minus the sum of all; and with what the planets'
+/// arcs have done already, arcs(row, mu h).
+template <class Arcs, class Take>
+NOETHER_EIGHT_INLINE void for_accelerations(const PlanetRows& planets, double h, const Arcs& arcs, const Take& take) {
   Eights outside{0.0, 0.0, 0.0};
   for (std::ptrdiff_t a = planets.rows - 1; a >= 0; --a) {
     PlanetRow& row = planets.row[a];
-    const Eights f = load_eights(row.force), x = load_eights(row.x);
+    const Eights f = load_eights(row.force);
     Eights outer{sums_downward(f.x), sums_downward(f.y), sums_downward(f.z)};
     if (a + 1 < planets.rows) outer = outer + outside;
     if (a > 0) outside = {first_lane(outer.x), first_lane(outer.y), first_lane(outer.z)};
-    const Eight inverse = load_eight(row.r_inverse), time = h;
-    const Eight arc = (time * load_eight(row.without_arc)) * (inverse * (inverse * inverse));
-    const Eights dv = ((time * load_eight(row.one_over_m)) * f + arc * x) + (time * load_eight(row.one_over_M)) * outer;
-    store_eights(add_change<compensated>(load_eights(row.v), dv, row.v_low), row.v);
+    const Eight time = h;
+    const Eights done = arcs(row, time * load_eight(row.without_arc));
+    take(row, ((time * load_eight(row.one_over_m)) * f + done) + (time * load_eight(row.one_over_M)) * outer);
   }
-  return near != 0;
+}
+/// mu h x/r^3 of the arcs.
+template <bool beside> NOETHER_EIGHT_INLINE Eights arcs_done(const PlanetRow& row, const Eight& mu_h) {
+  const Eights x = place_of<beside>(row);
+  const Eight inverse = beside ? Eight(1.0) / square_root(dot(x, x)) : load_eight(row.r_inverse);
+  return (mu_h * (inverse * (inverse * inverse))) * x;
+}
+
+template <bool compensated> NOETHER_EIGHT_INLINE void add_to_velocities(PlanetRow& row, const Eights& dv) {
+  store_eights(add_change<compensated>(load_eights(row.v), dv, row.v_low), row.v);
+}
+
+template <bool compensated, bool beside> NOETHER_EIGHT_INLINE bool kick_jacobi(const PlanetRows& planets, double h) {
+  const bool near = forces_jacobi<beside>(planets);
+  for_accelerations(planets, h, arcs_done<beside>, add_to_velocities<compensated>);
+  return near;
 }
 
 /// What moves all heliocentric positions in a jump over h, |sum p|^2/2 m_0.
@@ -184,14 +219,110 @@ NOETHER_EIGHT_INLINE bool kick_democratic(const PlanetRows& planets, double h, b
 }
 
 bool kick(const PlanetRows& planets, double h, bool predicted) {
-  if (planets.jacobi) return planets.compensated ? kick_jacobi<true>(planets, h) : kick_jacobi<false>(planets, h);
+  if (planets.jacobi) {
+    return planets.compensated ? kick_jacobi<true, false>(planets, h) : kick_jacobi<false, false>(planets, h);
+  }
   return planets.compensated ? kick_democratic<true>(planets, h, predicted)
                              : kick_democratic<false>(planets, h, predicted);
+}
+
+bool accelerate(const PlanetRows& planets, double h, bool known) {
+  const bool near = !known && forces_jacobi<false>(planets);
+  for_accelerations(planets, h, arcs_done<false>, [](PlanetRow& row, const Eights& a) { store_eights(a, row.along); });
+  return near;
+}
+
+void kick_beside(const PlanetRows& planets, double h) {
+  if (planets.compensated) {
+    kick_jacobi<true, true>(planets, h);
+  } else {
+    kick_jacobi<false, true>(planets, h);
+  }
+}
+
+/// (u . grad) of d/r^n.
+template <int n> NOETHER_EIGHT_INLINE Eights change_of_ray(const Eights& d, const Eights& u, const Eight& r2) {
+  return u - ((Eight(double(n)) * dot(d, u)) / r2) * d;
+}
+
+/// How the attraction of planets i and j, which is `away` lanes further in its row, changes along a direction.
+template <int away>
+NOETHER_EIGHT_INLINE void change_of_pair(const PlanetPairs& pairs, const PlanetRow& first, const PlanetRow& second,
+                                         PairSums& sums) {
+  const Eights d = rotate<away>(load_eights(second.y)) - load_eights(first.y);
+  const Eights u = rotate<away>(load_eights(second.y_along)) - load_eights(first.y_along);
+  const Eight r2 = dot(d, d);
+  const Eights f = (load_eight(pairs.attraction[away]) / (r2 * square_root(r2))) * change_of_ray<3>(d, u, r2);
+  sums.force = sums.force + f;
+  sums.back = sums.back + rotate<-away>(f);
+}
+NOETHER_EIGHT_INLINE Eights changes_within_row(const PlanetPairs& pairs, const PlanetRow& row) {
+  PairSums sums, opposite;
+  change_of_pair<1>(pairs, row, row, sums);
+  change_of_pair<2>(pairs, row, row, sums);
+  change_of_pair<3>(pairs, row, row, sums);
+  change_of_pair<4>(pairs, row, row, opposite);  // each pair twice
+  return (sums.force + opposite.force) - sums.back;
+}
+[[gnu::noinline]] void changes_between_rows(const PlanetPairs& pairs, PlanetRow& first, PlanetRow& second) {
+  PairSums sums;
+  change_of_pair<0>(pairs, first, second, sums);
+  change_of_pair<1>(pairs, first, second, sums);
+  change_of_pair<2>(pairs, first, second, sums);
+  change_of_pair<3>(pairs, first, second, sums);
+  change_of_pair<4>(pairs, first, second, sums);
+  change_of_pair<5>(pairs, first, second, sums);
+  change_of_pair<6>(pairs, first, second, sums);
+  change_of_pair<7>(pairs, first, second, sums);
+  store_eights(load_eights(first.force) + sums.force, first.force);
+  store_eights(load_eights(second.force) - sums.back, second.force);
+}
+
+/// The forces in the rows become their changes along the direction.
+NOETHER_EIGHT_INLINE void force_changes(const PlanetRows& planets) {
+  Eights inside{0.0, 0.0, 0.0};
+  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
+    PlanetRow& row = planets.row[a];
+    store_eights(relative_to_star(planets, a, load_eights(row.along), inside), row.y_along);
+  }
+  const PlanetPairs* pairs = planets.pairs;
+  for (std::ptrdiff_t a = 0; a < planets.rows; pairs += planets.rows - a, ++a) {
+    PlanetRow& row = planets.row[a];
+    const Eights y = load_eights(row.y), u = load_eights(row.y_along);
+    const Eight r2 = dot(y, y);
+    Eights f =
+        changes_within_row(*pairs, row) - (load_eight(row.star) / (r2 * square_root(r2))) * change_of_ray<3>(y, u, r2);
+    if (planets.relativity) f = f - (load_eight(row.relativity) / (r2 * r2)) * change_of_ray<4>(y, u, r2);
+    store_eights(f, row.force);
+  }
+  pairs = planets.pairs;
+  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
+    ++pairs;
+    for (std::ptrdiff_t b = a + 1; b < planets.rows; ++b, ++pairs)
+      changes_between_rows(*pairs, planets.row[a], planets.row[b]);
+  }
+}
+
+template <bool compensated> void kick_by_gradient_of(const PlanetRows& planets, double h) {
+  force_changes(planets);
+  const auto arcs = [](const PlanetRow& row, const Eight& mu_h) {
+    const Eights x = load_eights(row.x), u = load_eights(row.along);
+    const Eight inverse = load_eight(row.r_inverse);
+    return (mu_h * (inverse * (inverse * inverse))) * change_of_ray<3>(x, u, dot(x, x));
+  };
+  for_accelerations(planets, h, arcs, add_to_velocities<compensated>);
+}
+void kick_by_gradient(const PlanetRows& planets, double h) {
+  if (planets.compensated) {
+    kick_by_gradient_of<true>(planets, h);
+  } else {
+    kick_by_gradient_of<false>(planets, h);
+  }
 }
 
 }  // namespace
 
 extern const PlanetKernels planet_kernels;
-const PlanetKernels planet_kernels{prepare, drift, kick};
+const PlanetKernels planet_kernels{prepare, drift, kick, accelerate, kick_beside, kick_by_gradient};
 
 }  // namespace noether::NOETHER_SIMD_LEVEL

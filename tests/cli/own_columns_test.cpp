@@ -107,6 +107,20 @@ TEST_CASE("frames hold the columns that move, and what is drawn and written from
   CHECK(has(read_text(folder / "a.xyz"), "Properties=species:S:1:pos:R:3:vel:R:3:orientation:R:4:spin:R:3 Time=0"));
   own_output(folder, "plot a/run.h5 --out picture.svg");
 }
+
+TEST_CASE("frames whose columns only have the names of those of rigid bodies start runs and scenes as points do",
+          "[cli][own_columns]") {
+  const SceneFolder folder(wave);
+  own_output(folder, "run scene.toml --quiet --out a");
+  own_output(folder, "convert a/run.h5 again.h5 --bodies");
+  const std::string head = wave.substr(0, wave.find("[[particles.body]]"));
+  const std::string rest = wave.substr(wave.find("[hamiltonian]"));
+  for (const std::string from : {"a/run.h5", "again.h5"}) {
+    test::write_text(folder / "next.toml", head + "[particles]\nbodies = '" + from + "'\n" + rest);
+    own_output(folder, "run next.toml --quiet --out b --fresh");
+    CHECK(json_member(own_output(folder, "info --json b/run.h5"), "particles") == "2");
+  }
+}
 #endif
 
 TEST_CASE("a flipped bit in any column that moves changes the digest", "[cli][own_columns]") {

@@ -51,6 +51,7 @@ struct Twin {
   std::string method;
   std::string place = {};       ///< where the scene's particles are, if not in open space
   std::string decorators = {};  ///< of the scene
+  CompositionOptions options = {};
 };
 
 /// One way to make the run.
@@ -70,14 +71,22 @@ Parts parts() {
   return all;
 }
 
+/// As a scene has them.
+std::string keys_of(const CompositionOptions& options) {
+  std::string kernel;
+  for (const auto& [value, name] : EnumNames<StepKernel>::values) kernel = value == options.kernel ? name : kernel;
+  return fmt::format("compensated={}\ncorrector={}\nkernel='{}'\nsecond_corrector={}\n", options.compensated,
+                     options.corrector, kernel, options.second_corrector);
+}
+
 Simulation<double> simulation_of(const Twin& twin, const Way& way) {
   const std::string watch = way.cadence > 0 ? fmt::format("[[every]]\ntype='energy'\nsteps={0}\n", way.cadence) : "";
   const auto from_scene = [&] {
-    Scene scene =
-        read_scene(fmt::format("units='reduced'\n{}[[particles.body]]\nname='replaced'\nmass=1\nx=[0,0,0]\n"
-                               "v=[0,0,0]\n{}[integrator]\nmethod='{}'\nstep={}\nsteps={}\n{}{}",
-                               twin.place, twin.hamiltonian, twin.method, twin.step, steps, twin.decorators, watch),
-                   "scene.toml", parts());
+    Scene scene = read_scene(fmt::format("units='reduced'\n{}[[particles.body]]\nname='replaced'\nmass=1\nx=[0,0,0]\n"
+                                         "v=[0,0,0]\n{}[integrator]\nmethod='{}'\nstep={}\nsteps={}\n{}{}{}",
+                                         twin.place, twin.hamiltonian, twin.method, twin.step, steps,
+                                         keys_of(twin.options), twin.decorators, watch),
+                             "scene.toml", parts());
     scene.particles = twin.bodies;
     return assemble(scene);
   };
@@ -218,6 +227,27 @@ std::vector<Twin> liquid_twins() {
   return twins;
 }
 
+/// Words around the run, and kicks that look along themselves: planets alone, which are in lanes, and with tracers.
+std::vector<Twin> corrected_twins() {
+  using enum StepKernel;
+  std::vector<Twin> twins;
+  for (const int tracers : {0, 50}) {
+    const CompositionOptions all[] = {{.corrector = 17, .kernel = lazy},
+                                      {.corrector = 7, .kernel = modified, .second_corrector = true},
+                                      {.compensated = true, .corrector = 11, .kernel = composed},
+                                      {.corrector = 5}};
+    for (const CompositionOptions& options : all) {
+      Twin twin = wisdom_holman_twins(Coordinates::jacobi).front();
+      twin.name = fmt::format("{}, {} tracers", options.processing_text(), tracers);
+      twin.bodies = test::planets_with_tracers(tracers);
+      twin.program = compose(test::wisdom_holman({.G = test::outer_G}), schemes::verlet_aba, options);
+      twin.options = options;
+      twins.push_back(std::move(twin));
+    }
+  }
+  return twins;
+}
+
 /// A decorator with state, around splittings in inertial and in other coordinates: two of five steps are projected.
 std::vector<Twin> decorated_twins() {
   const std::string scene = "[[integrator.decorator]]\ntype='energy_projection'\nsteps=2\n";
@@ -309,10 +339,10 @@ std::vector<Twin> two_word_twins() {
 }
 
 void check_all_twins(std::size_t stride) {
-  for (const auto& twins :
-       {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), turning_twins(), rigid_twins(),
-        two_word_twins(), wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
-        wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
+  for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), turning_twins(),
+                            rigid_twins(), two_word_twins(), corrected_twins(),
+                            wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
+                            wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);
   }
 }

@@ -1,5 +1,6 @@
 // kill -9 while files are written: whatever was flushed is there, and the run goes on from it.
 
+#include "integrators/wisdom_holman.hpp"
 #include "io/digest.hpp"
 #include "io/inspect.hpp"
 #include "numbers/parallel.hpp"
@@ -256,6 +257,13 @@ struct LateRun {
   io::TrajectoryWriter* writer;
 };
 
+/// Words around the run, of which frames and checkpoints stand in the middle, and kicks along themselves.
+const WholeRun corrected = [](const auto& folder) {
+  go_on(test::WritingRun(folder / "run.h5", test::outer_planets(),
+                         compose(test::wisdom_holman({.G = test::outer_G}), schemes::verlet_aba,
+                                 {.corrector = 17, .kernel = StepKernel::lazy})),
+        folder, 60, 7);
+};
 const WholeRun late = [](const auto& folder) { go_on(LateRun(folder / "run.h5"), folder, 60, 7); };
 const WholeRun of_system = [](const auto& folder) { go_on(test::LorenzRun(folder / "run.h5"), folder, 60, 7); };
 
@@ -387,6 +395,10 @@ TEST_CASE("a run that dies within any of its writes leaves frames of a run that 
 
 TEST_CASE("so does a run of a system", "[trajectory][checkpoint][kill][system]") { die_anywhere(of_system, 12); }
 
+TEST_CASE("so does a run with a corrector and a kernel", "[trajectory][checkpoint][kill]") {
+  die_anywhere(corrected, 6);
+}
+
 TEST_CASE("so does a large one", "[trajectory][checkpoint][kill][slow]") { die_anywhere(large, 6); }
 
 TEST_CASE("the same for thousands of deaths", "[trajectory][kill][.][nightly]") {
@@ -394,6 +406,7 @@ TEST_CASE("the same for thousands of deaths", "[trajectory][kill][.][nightly]") 
   die_at_moments(500);
   die_anywhere(small, 600);
   die_anywhere(of_system, 600);
+  die_anywhere(corrected, 200);
   die_anywhere(large, 150);
   die_within_each_write(of_system);
 }

@@ -34,8 +34,10 @@ template <class Call> std::string error_of(const Call& call) {
 
 /// The outer planets under Verlet, steps of 40 days, writing frames every 5 steps and the energy every 3.
 struct WritingRun {
-  explicit WritingRun(const std::filesystem::path& file, ParticleSystem<double> particles = outer_planets())
-      : simulation(std::move(particles), compose(kinetic_potential(Gravity{.G = outer_G}), schemes::verlet), 40.0),
+  explicit WritingRun(const std::filesystem::path& file, ParticleSystem<double> particles = outer_planets(),
+                      const AnyIntegrator<double>& integrator = compose(kinetic_potential(Gravity{.G = outer_G}),
+                                                                        schemes::verlet))
+      : simulation(std::move(particles), integrator, 40.0),
         energy(&simulation.every(3, Energy{})),
         angular(&simulation.every(10, AngularMomentum{})),
         writer(&simulation.every(5, io::TrajectoryWriter(file, {.scene_toml = "title = \"outer planets\"\n"}))) {}
