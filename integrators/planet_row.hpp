@@ -30,6 +30,9 @@ struct alignas(64) PlanetRow : ArcRow {
   double star[8];         ///< Jacobi: G m_0 m_k; 0 of the innermost, whose arc has it all
   double without_arc[8];  ///< Jacobi: mu_k; 0 of the innermost
   double relativity[8];   ///< 6 (G m_0/c)^2 m_k; 0 without general relativity
+  double attracts[8];     ///< G m_0 m_k
+  double mass[8];         ///< m_k; 0 where there is no planet
+  double reach[8];        ///< as `PlanetPairs::near` has it: a pair is near within the square of the sum of both
   double force[3][8];     ///< of the last kick
 
   // Of kernels, which look at forces beside x or along a direction.
@@ -53,9 +56,10 @@ bool exact_arc(const double* x, const double* v, double mu, double h, double* dx
 struct PlanetRows {
   PlanetRow* row;
   std::ptrdiff_t rows;
-  const PlanetPairs* pairs;  ///< of rows (0, 0), (0, 1), ..., (1, 1), (1, 2), ...
-  bool jacobi;               ///< coordinates; otherwise democratic ones
-  bool compensated;          ///< whether what rounding takes is kept
+  const PlanetPairs* pairs;   ///< of rows (0, 0), (0, 1), ..., (1, 1), (1, 2), ..., or of each row with itself alone
+  bool of_own_alone = false;  ///< the latter: constants of other pairs are worked out where they are needed
+  bool jacobi;                ///< coordinates; otherwise democratic ones
+  bool compensated;           ///< whether what rounding takes is kept
   bool relativity;
   ExactArc exact;
 };

@@ -183,7 +183,8 @@ void WisdomHolman<Real, F>::kernel_of_lanes(char letter, ParticleSystem<Real>& s
 /// Takes down encounters of planets in the last kick.
 template <class Real, class F> template <class> void WisdomHolman<Real, F>::note_near() {
   lanes_.for_pairs([&](Index i, Index j, double r2, double nearer2) {
-    encounters_.note(std::max(i, j), std::min(i, j), r2, nearer2, moment_, backward_);
+    if (encounters_.near(i, j, r2, nearer2))
+      encounters_.note(std::max(i, j), std::min(i, j), r2, nearer2, moment_, backward_);
   });
   lanes_.watch([&](Index i, Index j) { return encounters_.square_of_news(i, j); });
 }

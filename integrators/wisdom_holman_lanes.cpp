@@ -12,7 +12,7 @@ namespace noether {
 namespace {
 
 constexpr std::size_t lanes = 8;
-constexpr std::size_t most_planets = 256;  // constants of pairs stay below a megabyte
+constexpr std::size_t most_kept = 32;  // rows of which constants of all pairs are kept: below a megabyte
 
 }  // namespace
 
@@ -26,7 +26,7 @@ bool exact_arc(const double* x, const double* v, double mu, double h, double* dx
 bool PlanetLanes::can_take(const PlanetSystem& system) {
   constexpr double least = 1e-60, most = 1e60;
   const double star = system.masses[0], mu = system.G * star;
-  if (system.order.size() < 2 || system.order.size() > most_planets + 1) return false;
+  if (system.order.size() < 2) return false;
   if (!(mu > least && mu < most) || !(system.size > least && system.size < most)) return false;
   return std::all_of(system.order.begin() + 1, system.order.end(), [&](std::int64_t i) {
     const double m = system.masses[static_cast<std::size_t>(i)] / star;
@@ -40,7 +40,8 @@ void PlanetLanes::bind(const PlanetSystem& system) {
   relativity_ = system.bend.has_value();
   const std::size_t n = order_.size(), rows = (n + lanes - 1) / lanes;
   row_.assign(rows, PlanetRow{});
-  pairs_.assign(rows * (rows + 1) / 2, PlanetPairs{});
+  of_own_alone_ = rows > most_kept;
+  pairs_.assign(of_own_alone_ ? rows : rows * (rows + 1) / 2, PlanetPairs{});
   const double star = system.masses[0], mu = system.G * star, far = 1e3 * system.size;
   const double bend = system.bend.value_or(0);
   star_mu_ = mu;
@@ -62,9 +63,11 @@ void PlanetLanes::bind(const PlanetSystem& system) {
     row.star[lane] = k > 0 ? mu * m : 0;
     row.without_arc[lane] = k > 0 ? row.mu[lane] : 0;
     row.relativity[lane] = bend * m;
+    row.attracts[lane] = mu * m;
+    row.mass[lane] = m;
     row.moves[lane] = 1;
     interior = total;
-    for (std::size_t j = 0; j < k; ++j) {
+    for (std::size_t j = first_kept(k); j < k; ++j) {
       const double other = system.masses[static_cast<std::size_t>(order_[j])] / star;
       for_places(j, k, [&](PlanetPairs& pairs, std::size_t away, std::size_t at) {
         pairs.attraction[away][at] = mu * other * m;
@@ -76,6 +79,7 @@ void PlanetLanes::bind(const PlanetSystem& system) {
 }
 
 PlanetPairs& PlanetLanes::pair_constants(std::size_t first_row, std::size_t second_row) {
+  if (of_own_alone_) return pairs_[first_row];
   const std::size_t before = first_row * row_.size() - first_row * (first_row + 1) / 2 + first_row;
   return pairs_[before + second_row - first_row];
 }
@@ -94,10 +98,16 @@ void PlanetLanes::set_near(std::size_t inner, std::size_t outer, double ratio2) 
              [&](PlanetPairs& pairs, std::size_t away, std::size_t at) { pairs.near[away][at] = ratio2; });
 }
 
+/// The cube root of a sum of two masses is at most the sum of theirs: with equal ones, 2^(1/3) times one of them.
+void PlanetLanes::set_reach(std::size_t k, double ratio2_of_equals) {
+  row_[k / lanes].reach[k % lanes] = std::sqrt(ratio2_of_equals) / std::cbrt(2.0) * (1 + 1e-12);
+}
+
 PlanetRows PlanetLanes::rows() {
   return {.row = row_.data(),
           .rows = static_cast<std::ptrdiff_t>(row_.size()),
           .pairs = pairs_.data(),
+          .of_own_alone = of_own_alone_,
           .jacobi = jacobi_,
           .compensated = compensated_,
           .relativity = relativity_,

@@ -34,7 +34,7 @@ struct PlanetSystem {
 class PlanetLanes {
  public:
   /// Whether these planets, and tracers among them, can be moved in lanes: products of two masses must be normal
-  /// numbers, and there are constants of each pair, so that there may be 256 planets.
+  /// numbers.
   static bool can_take(const PlanetSystem& system);
 
   /// Takes over constants, and forgets the prediction.
@@ -43,8 +43,12 @@ class PlanetLanes {
   /// be noted, by particle.
   template <class Near> void watch(const Near& near) {
     for (std::size_t k = 1; k < order_.size(); ++k) {
-      for (std::size_t j = 0; j < k; ++j)
+      for (std::size_t j = first_kept(k); j < k; ++j)
         set_near(j, k, near(static_cast<Index>(order_[j]), static_cast<Index>(order_[k])));
+    }
+    for (std::size_t k = 0; of_own_alone_ && k < order_.size(); ++k) {
+      const auto i = static_cast<Index>(order_[k]);
+      set_reach(k, near(i, i));
     }
   }
   bool bound() const { return !row_.empty(); }
@@ -118,6 +122,9 @@ class PlanetLanes {
   PlanetPairs& pair_constants(std::size_t first_row, std::size_t second_row);
   template <class Set> void for_places(std::size_t inner, std::size_t outer, const Set& set);
   void set_near(std::size_t inner, std::size_t outer, double ratio2);
+  void set_reach(std::size_t k, double ratio2_of_equals);
+  /// The innermost planet whose pair with planet k has constants that are kept.
+  std::size_t first_kept(std::size_t k) const { return of_own_alone_ ? k / 8 * 8 : 0; }
   Vec3<double> from_star(std::size_t k) const {
     const PlanetRow& row = row_[k / 8];
     return {row.y[0][k % 8], row.y[1][k % 8], row.y[2][k % 8]};
@@ -128,8 +135,9 @@ class PlanetLanes {
   AlignedVector<PlanetPairs> pairs_;
   double star_mu_ = 0;  ///< G m_0
   bool jacobi_ = true, compensated_ = false, relativity_ = false;
-  double last_ = 0;         ///< length of the last arcs; 0: none since the prediction was forgotten
-  bool predicted_ = false;  ///< `s` of the rows is a prediction for arcs of that length
+  bool of_own_alone_ = false;  ///< constants of pairs are kept of each row with itself alone
+  double last_ = 0;            ///< length of the last arcs; 0: none since the prediction was forgotten
+  bool predicted_ = false;     ///< `s` of the rows is a prediction for arcs of that length
   bool knows_forces_ = false;
   std::int64_t second_passes_ = 0, exact_arcs_ = 0;
 };

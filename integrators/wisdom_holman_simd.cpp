@@ -27,14 +27,53 @@ struct PairSums {
   Eight least = 0.0;            ///< below 0 where a pair is near
 };
 
+/// Constants of the pairs of two rows, or of one row with itself, that are kept.
+struct KeptPairs {
+  const PlanetPairs& pairs;
+
+  template <int away> NOETHER_EIGHT_INLINE Eight attraction() const { return load_eight(pairs.attraction[away]); }
+  template <int away> NOETHER_EIGHT_INLINE Eight near() const { return load_eight(pairs.near[away]); }
+};
+/// Those of the planets of one row and of one further out, to the bit; `near` is not less.
+struct PairsOfRows {
+  const PlanetRow &first, &second;
+
+  template <int away> NOETHER_EIGHT_INLINE Eight attraction() const {
+    return load_eight(first.attracts) * rotate<away>(load_eight(second.mass));
+  }
+  template <int away> NOETHER_EIGHT_INLINE Eight near() const {
+    const Eight both = load_eight(first.reach) + rotate<away>(load_eight(second.reach));
+    return both * both;
+  }
+};
+/// Calls work(constants, first row, second row) for all pairs of different rows.
+template <class Work> NOETHER_EIGHT_INLINE void for_rows(const PlanetRows& planets, const Work& work) {
+  const PlanetPairs* pairs = planets.pairs;
+  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
+    ++pairs;
+    for (std::ptrdiff_t b = a + 1; b < planets.rows; ++b) {
+      PlanetRow &first = planets.row[a], &second = planets.row[b];
+      if (planets.of_own_alone) {
+        work(PairsOfRows{first, second}, first, second);
+      } else {
+        work(KeptPairs{*pairs++}, first, second);
+      }
+    }
+  }
+}
+/// Constants of a row with itself.
+NOETHER_EIGHT_INLINE const PlanetPairs& own_pairs(const PlanetRows& planets, std::ptrdiff_t a) {
+  return planets.pairs[planets.of_own_alone ? a : a * planets.rows - a * (a - 1) / 2];
+}
+
 /// G m_i m_j (x_j - x_i)/r^3 of planets i and j, which is `away` lanes further in its row.
-template <int away>
-NOETHER_EIGHT_INLINE void attract(const PlanetPairs& pairs, const Eights& x, const Eight& from_star2,
-                                  const Eights& others, PairSums& sums) {
+template <int away, class Pairs>
+NOETHER_EIGHT_INLINE void attract(const Pairs& pairs, const Eights& x, const Eight& from_star2, const Eights& others,
+                                  PairSums& sums) {
   const Eights d = rotate<away>(others) - x;
   const Eight r2 = dot(d, d);
-  const Eights f = (load_eight(pairs.attraction[away]) / (r2 * square_root(r2))) * d;
-  sums.least = smaller(sums.least, r2 - load_eight(pairs.near[away]) * from_star2);
+  const Eights f = (pairs.template attraction<away>() / (r2 * square_root(r2))) * d;
+  sums.least = smaller(sums.least, r2 - pairs.template near<away>() * from_star2);
   sums.force = sums.force + f;
   sums.back = sums.back + rotate<-away>(f);
 }
@@ -58,13 +97,14 @@ NOETHER_EIGHT_INLINE void attract_opposite(const PlanetPairs& pairs, const Eight
 }
 NOETHER_EIGHT_INLINE PairSums within_row(const PlanetPairs& pairs, const Eights& x, const Eight& from_star2) {
   PairSums sums;
-  attract<1>(pairs, x, from_star2, x, sums);
-  attract<2>(pairs, x, from_star2, x, sums);
-  attract<3>(pairs, x, from_star2, x, sums);
+  const KeptPairs kept{pairs};
+  attract<1>(kept, x, from_star2, x, sums);
+  attract<2>(kept, x, from_star2, x, sums);
+  attract<3>(kept, x, from_star2, x, sums);
   attract_opposite(pairs, x, from_star2, sums);
   return sums;
 }
-[[gnu::noinline]] bool between_rows(const PlanetPairs& pairs, PlanetRow& first, PlanetRow& second) {
+template <class Pairs> [[gnu::noinline]] bool between_rows(const Pairs& pairs, PlanetRow& first, PlanetRow& second) {
   const Eights x = load_eights(first.y), others = load_eights(second.y);
   const Eight from_star2 = dot(x, x);
   PairSums sums;
@@ -83,12 +123,8 @@ NOETHER_EIGHT_INLINE PairSums within_row(const PlanetPairs& pairs, const Eights&
 /// Attractions between planets of different rows; `y` and the forces so far stand in the rows.
 NOETHER_EIGHT_INLINE bool between_all(const PlanetRows& planets) {
   bool near = false;
-  const PlanetPairs* pairs = planets.pairs;
-  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
-    ++pairs;
-    for (std::ptrdiff_t b = a + 1; b < planets.rows; ++b, ++pairs)
-      near |= between_rows(*pairs, planets.row[a], planets.row[b]);
-  }
+  for_rows(planets,
+           [&](const auto& pairs, PlanetRow& first, PlanetRow& second) { near |= between_rows(pairs, first, second); });
   return near;
 }
 
@@ -114,14 +150,13 @@ template <bool beside> NOETHER_EIGHT_INLINE Eights place_of(const PlanetRow& row
 /// Jacobi coordinates: the forces there, into the rows. @return whether two planets are near
 template <bool beside> NOETHER_EIGHT_INLINE bool forces_jacobi(const PlanetRows& planets) {
   unsigned near = 0;
-  const PlanetPairs* pairs = planets.pairs;
   Eights inside{0.0, 0.0, 0.0};
-  for (std::ptrdiff_t a = 0; a < planets.rows; pairs += planets.rows - a, ++a) {
+  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
     PlanetRow& row = planets.row[a];
     const Eights y = relative_to_star(planets, a, place_of<beside>(row), inside);
     store_eights(y, row.y);
     const Eight r2 = dot(y, y);
-    const PairSums sums = within_row(*pairs, y, r2);
+    const PairSums sums = within_row(own_pairs(planets, a), y, r2);
     near |= exceeding(Eight(0.0), sums.least);
     const Eight cube = r2 * square_root(r2);
     Eight pull;
@@ -187,14 +222,13 @@ NOETHER_EIGHT_INLINE Eights jump_of(const PlanetRows& planets, double h) {
 template <bool compensated>
 NOETHER_EIGHT_INLINE bool kick_democratic(const PlanetRows& planets, double h, bool predicted) {
   unsigned near = 0;
-  const PlanetPairs* pairs = planets.pairs;
   const Eights jump = jump_of(planets, 0.5 * h);
-  for (std::ptrdiff_t a = 0; a < planets.rows; pairs += planets.rows - a, ++a) {
+  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
     PlanetRow& row = planets.row[a];
     const Eights y = load_eights(row.x) + load_eight(row.moves) * jump;
     store_eights(y, row.y);
     const Eight r2 = dot(y, y);
-    const PairSums sums = within_row(*pairs, y, r2);
+    const PairSums sums = within_row(own_pairs(planets, a), y, r2);
     near |= exceeding(Eight(0.0), sums.least);
     Eights f = sums.force - sums.back;
     if (planets.relativity) f = f - (load_eight(row.relativity) / (r2 * r2)) * y;
@@ -246,25 +280,27 @@ template <int n> NOETHER_EIGHT_INLINE Eights change_of_ray(const Eights& d, cons
 }
 
 /// How the attraction of planets i and j, which is `away` lanes further in its row, changes along a direction.
-template <int away>
-NOETHER_EIGHT_INLINE void change_of_pair(const PlanetPairs& pairs, const PlanetRow& first, const PlanetRow& second,
+template <int away, class Pairs>
+NOETHER_EIGHT_INLINE void change_of_pair(const Pairs& pairs, const PlanetRow& first, const PlanetRow& second,
                                          PairSums& sums) {
   const Eights d = rotate<away>(load_eights(second.y)) - load_eights(first.y);
   const Eights u = rotate<away>(load_eights(second.y_along)) - load_eights(first.y_along);
   const Eight r2 = dot(d, d);
-  const Eights f = (load_eight(pairs.attraction[away]) / (r2 * square_root(r2))) * change_of_ray<3>(d, u, r2);
+  const Eights f = (pairs.template attraction<away>() / (r2 * square_root(r2))) * change_of_ray<3>(d, u, r2);
   sums.force = sums.force + f;
   sums.back = sums.back + rotate<-away>(f);
 }
 NOETHER_EIGHT_INLINE Eights changes_within_row(const PlanetPairs& pairs, const PlanetRow& row) {
   PairSums sums, opposite;
-  change_of_pair<1>(pairs, row, row, sums);
-  change_of_pair<2>(pairs, row, row, sums);
-  change_of_pair<3>(pairs, row, row, sums);
-  change_of_pair<4>(pairs, row, row, opposite);  // each pair twice
+  const KeptPairs kept{pairs};
+  change_of_pair<1>(kept, row, row, sums);
+  change_of_pair<2>(kept, row, row, sums);
+  change_of_pair<3>(kept, row, row, sums);
+  change_of_pair<4>(kept, row, row, opposite);  // each pair twice
   return (sums.force + opposite.force) - sums.back;
 }
-[[gnu::noinline]] void changes_between_rows(const PlanetPairs& pairs, PlanetRow& first, PlanetRow& second) {
+template <class Pairs>
+[[gnu::noinline]] void changes_between_rows(const Pairs& pairs, PlanetRow& first, PlanetRow& second) {
   PairSums sums;
   change_of_pair<0>(pairs, first, second, sums);
   change_of_pair<1>(pairs, first, second, sums);
@@ -285,22 +321,17 @@ NOETHER_EIGHT_INLINE void force_changes(const PlanetRows& planets) {
     PlanetRow& row = planets.row[a];
     store_eights(relative_to_star(planets, a, load_eights(row.along), inside), row.y_along);
   }
-  const PlanetPairs* pairs = planets.pairs;
-  for (std::ptrdiff_t a = 0; a < planets.rows; pairs += planets.rows - a, ++a) {
+  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
     PlanetRow& row = planets.row[a];
     const Eights y = load_eights(row.y), u = load_eights(row.y_along);
     const Eight r2 = dot(y, y);
-    Eights f =
-        changes_within_row(*pairs, row) - (load_eight(row.star) / (r2 * square_root(r2))) * change_of_ray<3>(y, u, r2);
+    Eights f = changes_within_row(own_pairs(planets, a), row) -
+               (load_eight(row.star) / (r2 * square_root(r2))) * change_of_ray<3>(y, u, r2);
     if (planets.relativity) f = f - (load_eight(row.relativity) / (r2 * r2)) * change_of_ray<4>(y, u, r2);
     store_eights(f, row.force);
   }
-  pairs = planets.pairs;
-  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
-    ++pairs;
-    for (std::ptrdiff_t b = a + 1; b < planets.rows; ++b, ++pairs)
-      changes_between_rows(*pairs, planets.row[a], planets.row[b]);
-  }
+  for_rows(planets,
+           [](const auto& pairs, PlanetRow& first, PlanetRow& second) { changes_between_rows(pairs, first, second); });
 }
 
 template <bool compensated> void kick_by_gradient_of(const PlanetRows& planets, double h) {

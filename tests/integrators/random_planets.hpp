@@ -60,6 +60,20 @@ inline ParticleSystem<double> random_planets(int n, std::mt19937_64& random, boo
   return s;
 }
 
+/// Many planets of different masses on near orbits, far from each other.
+inline ParticleSystem<double> crowd_of_planets(int n) {
+  std::mt19937_64 random(61);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  ParticleSystem<double> s(unit_system("solar"));
+  s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+  for (int k = 0; k < n; ++k) {
+    const auto [x, v] = random_place(s.units().G, 1 + 0.02 * k, 0.01 * uniform(random), random);
+    s.add("planet " + std::to_string(k), std::pow(10, -9 + 2 * uniform(random)), x, v);
+  }
+  move_to_barycenter(s);
+  return s;
+}
+
 template <class Real> using Planets = std::vector<std::pair<Vec3<Real>, Vec3<Real>>>;
 
 /// Positions and velocities about the star after steps of a word from these doubles, with x and v a little larger.
