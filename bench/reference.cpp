@@ -2,25 +2,34 @@
 /// `rebound` and the Taylor method of `heyoka` (high accuracy) where Python has them; each is left out where it is not.
 ///
 /// Cases, of which arguments may name some: `outer`, the outer planets over 10 000 years; `solar_system`, that of the
-/// example over 200 years; `kepler_0.9` and `kepler_0.9999`, two bodies of that e over 1000 turns and over 100.
+/// example over 200 years; `chain_of_7`, `triple` and `circumbinary`, those of tests/data/orbits: seven planets near
+/// resonances, three stars, and a planet about two stars; `kepler_0.9` and `kepler_0.9999`, two bodies of that e over
+/// 1000 turns and over 100.
 ///
-/// Protocol: 5 rounds of every method and every peer in turn, each over a hundredth of the case to warm up and then
-/// over all of it; medians of processor seconds of the run alone. Each round has its own start, 1e-9 aside of the one
-/// before, for an error at rounding level is one throw of dice: errors are medians over the rounds. Positions are
-/// compared with Gauss's 8 stages in 113 bits from the same doubles. Energies are looked at every 10 steps of each
-/// program's own, in a run beside the one that is timed.
+/// Protocol: 16 rounds of every method and every peer in turn, each over a hundredth of the case to warm up and then
+/// over all of it; medians of processor seconds of the run alone. Each round has its own start, for an error at
+/// rounding level is one throw of dice: errors are medians over the starts. The first start is the case itself, of
+/// which the others have each coordinate and each velocity multiplied by 1 + 1e-10 u with u from -1 to 1.
+///
+/// Positions are compared with what the same doubles lead to: two bodies by one Kepler arc in 113 bits, others by
+/// `wide_gauss_8`, which is right to 1e-20 of a step, in steps of half the fixed ones, of a quarter where these would
+/// be too long. All have so few digits that their sum is the end without rounding. Energies are looked at every 10
+/// steps of each program's own, in the first 5 rounds, in a run beside the one that is timed.
 
 #include "bench/peer_program.hpp"
 #include "bench/support.hpp"
 
 #include "forces/gravity.hpp"
 #include "integrators/classical.hpp"
+#include "integrators/kepler.hpp"
 #include "monitors/monitors.hpp"
 #include "scene/scene.hpp"
 
 #include <filesystem>
+#include <fstream>
 #include <future>
 #include <map>
+#include <random>
 #include <sstream>
 
 using namespace noether;
@@ -30,8 +39,13 @@ namespace {
 struct Case {
   std::string name;
   ParticleSystem<double> bodies;
-  double G, end, first_step;
-  int fixed_steps;  ///< of Gauss with steps of one length; 0: such steps are of no use here
+  double G = 1, step = 0;
+  int steps = 0;          ///< how often `step` goes into the case
+  bool fixed = false;     ///< whether Gauss's method is sound with steps of that length
+  double first_step = 0;  ///< a guess for methods that choose their own
+  int exact_steps = 0;    ///< of `encke_gauss_8`; 0: no body dominates, or steps of one length are not sound
+
+  double end() const { return steps * step; }
 };
 
 ParticleSystem<double> ellipse(double e) {
@@ -42,15 +56,62 @@ ParticleSystem<double> ellipse(double e) {
   return s;
 }
 
+/// The first start of a file of tests/data/orbits, with steps of about a twelfth of the shortest period.
+Case orbits(const std::string& name, bool fixed) {
+  std::ifstream file(std::string(NOETHER_SOURCE_DIR) + "/tests/data/orbits/" + name + ".txt");
+  std::string text;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with('#')) text += line + '\n';
+  }
+  std::istringstream in(text);
+  Case one;
+  one.name = name;
+  one.fixed = fixed;
+  double end = 0, end_of_body = 0;
+  std::size_t bodies = 0;
+  int measured_from = 0, starts = 0;
+  in >> one.G >> end >> one.step >> bodies >> measured_from >> starts;
+  std::vector<double> masses(bodies);
+  for (double& mass : masses) in >> mass;
+  for (const double mass : masses) {
+    Vec3<double> x, v;
+    for (int k = 0; k < 3; ++k) in >> x[k];
+    for (int k = 0; k < 3; ++k) in >> v[k];
+    for (int word = 0; word < 6; ++word) in >> end_of_body;
+    one.bodies.add("body", mass, x, v);
+  }
+  if (!in) throw Error("tests/data/orbits has no '" + name + "'");
+  one.steps = static_cast<int>(std::lround(end / one.step));
+  one.first_step = one.step / 16;
+  return one;
+}
+
 std::vector<Case> cases() {
   const std::filesystem::path examples = std::filesystem::path(NOETHER_SOURCE_DIR) / "examples";
   const Scene outer = load_scene(examples / "outer_solar_system" / "scene.toml");
   const Scene all = load_scene(examples / "solar_system" / "scene.toml");
-  constexpr double day = 1, year = 365.25 * day, turn = 6.283185307179586;
-  return {{"outer", outer.particles, *outer.hamiltonian.G, 1e4 * year, 10, 8455},
-          {"solar_system", all.particles, all.particles.units().G, 200 * year, 1, 13320},
-          {"kepler_0.9", ellipse(0.9), 1, 1000 * turn, 1e-3, 0},
-          {"kepler_0.9999", ellipse(0.9999), 1, 100 * turn, 1e-6, 0}};
+  constexpr double turn = 6.283185307179586;
+  return {{"outer", outer.particles, *outer.hamiltonian.G, 432, 8455, true, 10, 10146},
+          {"solar_system", all.particles, all.particles.units().G, 5.484375, 13320, true, 1, 7696},
+          orbits("chain_of_7", true),
+          orbits("triple", false),
+          orbits("circumbinary", false),
+          {"kepler_0.9", ellipse(0.9), 1, turn, 1000, false, 1e-3},
+          {"kepler_0.9999", ellipse(0.9999), 1, turn, 100, false, 1e-6}};
+}
+
+/// The case from another start.
+Case moved(const Case& one, int start) {
+  Case other = one;
+  std::mt19937_64 random(static_cast<unsigned>(start));
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int k = 0; start > 0 && k < 3; ++k) {
+    for (Index i = 0; i < one.bodies.size(); ++i) {
+      other.bodies.positions().component(k)[i] *= 1 + 1e-10 * uniform(random);
+      other.bodies.velocities().component(k)[i] *= 1 + 1e-10 * uniform(random);
+    }
+  }
+  return other;
 }
 
 /// Gravity as a user may write it: for doubles only, one pair after the other.
@@ -82,10 +143,20 @@ template <class Real> Positions positions_of(const ParticleSystem<Real>& s) {
   return flat;
 }
 
+/// Where the doubles of the case lead, as the protocol says.
 Positions truth_of(const Case& one) {
-  auto field = std::make_unique<ForceMotion<Gravity, Quad>>(Gravity{.G = one.G});
-  Simulation run(one.bodies.as<Quad>(), Classical<Quad>(std::move(field), method("gauss_8", {.rtol = 1e-22})));
-  if (!run.run_until(one.end).ok()) throw Error("the truth of '" + one.name + "' failed");
+  if (one.bodies.size() == 2) {
+    const auto wide = one.bodies.as<Quad>();
+    const Vec3<Quad> x = wide.positions()[1] - wide.positions()[0], v = wide.velocities()[1] - wide.velocities()[0];
+    const Quad mu = Quad(one.G) * (wide.masses()[0] + wide.masses()[1]);
+    const KeplerArc<Quad> arc = kepler_arc<Quad>(x, v, mu, Quad(one.end()));
+    if (arc.status != KeplerStatus::converged) throw Error("the truth of '" + one.name + "' failed");
+    const Vec3<Quad> end = x + arc.dx;
+    return {0, 0, 0, static_cast<double>(end[0]), static_cast<double>(end[1]), static_cast<double>(end[2])};
+  }
+  const int finer = one.fixed ? 2 : 4;
+  Simulation run(one.bodies, classical(Gravity{.G = one.G}, method("wide_gauss_8")), one.step / finer);
+  if (!run.run(finer * one.steps).ok()) throw Error("the truth of '" + one.name + "' failed");
   return positions_of(run.particles());
 }
 
@@ -101,20 +172,20 @@ double distance(const Positions& a, const Positions& b) {
 struct Entry {
   std::string name;
   MethodChoice choice;
-  int steps;  ///< of one length; 0: of the method's choice
-  bool scalar = false;
+  int steps = 0;        ///< of one length; 0: of the method's choice
+  bool scalar = false;  ///< over `ScalarGravity`
 };
 
 Simulation<double> start(const Case& one, const Entry& entry) {
   const Classical<double> integrator =
       entry.scalar ? classical(ScalarGravity{one.G}, entry.choice) : classical(Gravity{.G = one.G}, entry.choice);
-  return entry.steps > 0 ? Simulation(one.bodies, integrator, one.end / entry.steps)
+  return entry.steps > 0 ? Simulation(one.bodies, integrator, one.end() / entry.steps)
                          : Simulation(one.bodies, integrator);
 }
 
 /// Runs over 1 / `part` of the case.
 void go(Simulation<double>& run, const Case& one, const Entry& entry, int part = 1) {
-  const Outcome outcome = entry.steps > 0 ? run.run(entry.steps / part) : run.run_until(one.end / part);
+  const Outcome outcome = entry.steps > 0 ? run.run(entry.steps / part) : run.run_until(one.end() / part);
   if (!outcome.ok()) throw Error(entry.name + ": " + to_text(outcome));
 }
 
@@ -158,19 +229,22 @@ double energy_error(const Case& one, const Entry& entry) {
 
 /// What another program says of a case.
 struct PeerRun {
-  double seconds = 0, energy_error = 0;
+  double seconds = 0, energy_error = 0;  ///< the latter of runs that were watched
   Positions positions;
 };
 
-PeerRun run_peer(bench::PeerProgram& peer, const Case& one) {
+PeerRun run_peer(bench::PeerProgram& peer, const Case& one, bool watched) {
   std::vector<Json> bodies;
   for (Index i = 0; i < one.bodies.size(); ++i) {
     const Vec3<double> x = one.bodies.positions()[i], v = one.bodies.velocities()[i];
     bodies.push_back(Json::list({one.bodies.masses()[i], x[0], x[1], x[2], v[0], v[1], v[2]}));
   }
-  const auto answer = peer.ask(
-      Json::object({{"G", one.G}, {"end", one.end}, {"first_step", one.first_step}, {"bodies", Json::list(bodies)}})
-          .text());
+  const auto answer = peer.ask(Json::object({{"G", one.G},
+                                             {"end", one.end()},
+                                             {"first_step", one.first_step},
+                                             {"watched", watched},
+                                             {"bodies", Json::list(bodies)}})
+                                   .text());
   if (!answer) throw Error("another program failed on '" + one.name + "'");
   std::istringstream words(*answer);
   PeerRun run;
@@ -181,14 +255,13 @@ PeerRun run_peer(bench::PeerProgram& peer, const Case& one) {
   return run;
 }
 
-/// Seconds of the rounds, and where they ended.
+/// Seconds of the rounds and where they ended, energy errors of those that were watched.
 struct Rounds {
   std::vector<double> seconds, energies;
   std::vector<Positions> ends;
 
-  void add(double took, double energy, Positions end) {
+  void add(double took, Positions end) {
     seconds.push_back(took);
-    energies.push_back(energy);
     ends.push_back(std::move(end));
   }
   bench::Measured errors(const std::vector<Positions>& truths) const {
@@ -201,31 +274,36 @@ struct Rounds {
 using Peers = std::map<std::string, bench::PeerProgram>;
 
 void measure(const bench::Rows& rows, const Case& one, Peers& peers) {
-  constexpr int rounds = 5;
-  std::vector<Entry> entries = {{"gauss_8", method("gauss_8"), 0}, {"gauss_radau_15", method("gauss_radau_15"), 0}};
-  entries.push_back({"gauss_8_scalar_force", method("gauss_8"), 0, true});
-  if (one.fixed_steps > 0) {
-    entries.push_back({"gauss_8_fixed", method("gauss_8", {.adaptive = false}), one.fixed_steps});
+  constexpr int rounds = 16, watched_rounds = 5;
+  std::vector<Entry> entries = {{"gauss_8", method("gauss_8")}, {"gauss_radau_15", method("gauss_radau_15")}};
+  entries.push_back({.name = "gauss_8_scalar_force", .choice = method("gauss_8"), .scalar = true});
+  if (one.fixed) {
+    entries.push_back({.name = "gauss_8_fixed", .choice = method("gauss_8", {.adaptive = false}), .steps = one.steps});
+  }
+  if (one.exact_steps > 0) {
+    entries.push_back({.name = "encke_gauss_8", .choice = method("encke_gauss_8"), .steps = one.exact_steps});
   }
   std::map<std::string, Rounds> ours, theirs;
   std::vector<std::future<Positions>> wanted;
   std::vector<Case> starts;
   for (int round = 0; round < rounds; ++round) {
-    Case& aside = starts.emplace_back(one);
-    aside.bodies.positions().component(0)[1] *= 1 + 1e-9 * round;
+    const Case& here = starts.emplace_back(moved(one, round));
+    const bool watched = round < watched_rounds;
     for (const Entry& entry : entries) {
-      Simulation<double> warm = start(aside, entry), run = start(aside, entry);
-      go(warm, aside, entry, 100);
-      const double took = bench::processor_seconds_of([&] { go(run, aside, entry); });
-      ours[entry.name].add(took, energy_error(aside, entry), positions_of(run.particles()));
+      Simulation<double> warm = start(here, entry), run = start(here, entry);
+      go(warm, here, entry, 100);
+      const double took = bench::processor_seconds_of([&] { go(run, here, entry); });
+      ours[entry.name].add(took, positions_of(run.particles()));
+      if (watched) ours[entry.name].energies.push_back(energy_error(here, entry));
     }
     for (auto& [peer, program] : peers) {
-      const PeerRun run = run_peer(program, aside);
-      theirs[peer].add(run.seconds, run.energy_error, run.positions);
+      const PeerRun run = run_peer(program, here, watched);
+      theirs[peer].add(run.seconds, run.positions);
+      if (watched) theirs[peer].energies.push_back(run.energy_error);
     }
   }
-  for (const Case& aside : starts) {
-    wanted.push_back(std::async(std::launch::async, [&aside] { return truth_of(aside); }));
+  for (const Case& here : starts) {
+    wanted.push_back(std::async(std::launch::async, [&here] { return truth_of(here); }));
   }
   std::vector<Positions> truths;
   for (auto& truth : wanted) truths.push_back(truth.get());
@@ -251,7 +329,10 @@ void measure(const bench::Rows& rows, const Case& one, Peers& peers) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  const bench::Rows rows("reference", count, arguments, {"outer", "solar_system", "kepler_0.9", "kepler_0.9999"});
+  const std::vector<Case> all = cases();
+  std::vector<std::string> names;
+  for (const Case& one : all) names.push_back(one.name);
+  const bench::Rows rows("reference", count, arguments, names);
   set_thread_count(1);
   Peers peers;
   for (const std::string peer : {"ias15", "heyoka"}) {
@@ -262,7 +343,7 @@ int main(int count, char** arguments) {
       fmt::print(stderr, "{} is not installed: it is left out of the comparison\n", peer);
     }
   }
-  for (const Case& one : cases()) {
+  for (const Case& one : all) {
     if (rows.wants(one.name)) measure(rows, one, peers);
   }
 }

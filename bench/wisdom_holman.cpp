@@ -3,12 +3,16 @@
 /// not.
 ///
 /// Parts, of which arguments may name some: `steps`, the eight planets at 5 days (of ABA(10,6,4) at 40 days, where a
-/// sub-step is a drift and a kick); `passes`, the share of drifts that needed a second pass, at steps of 1 to 40 days;
+/// sub-step is a drift and a kick); `passes`, how often an arc needed a second pass or the solver of single arcs, and
+/// what a step takes there: the eight planets at 1 to 40 days; then equal planets, with steps of a twentieth of the
+/// innermost period, by eccentricity (also with steps of a twentieth of a turn at pericentre), by number, and near each
+/// other, by the distance of neighbouring orbits in mutual Hill radii;
 /// `outer`, ABA(10,6,4) of the outer planets; `tracers`, a thousand to a million of them among four giant planets.
 ///
 /// Protocol: 9 rounds of every variant and every peer in turn, each over so many steps that it takes some 20 ms, after
 /// one to warm up; medians of processor times. Tracers: 5 rounds of two million tracer-steps or more and 256 steps at
-/// least, by the clock where there are several threads; the peer does a tenth of them.
+/// least, by the clock where there are several threads; the peer does a tenth of them. Passes: 100 000 steps, those of
+/// planets near each other from 20 starts; medians of 20 slices. A row of eight planets counts once for each pass.
 
 #include "bench/peer_program.hpp"
 #include "bench/support.hpp"
@@ -54,18 +58,24 @@ std::vector<Variant> variants() {
   constexpr Coordinates jacobi = Coordinates::jacobi, democratic = Coordinates::democratic;
   const Scheme &plain = schemes::verlet_aba, &fine = schemes::aba_10_6_4;
   const CompositionOptions compensated{.compensated = true};
-  return {{"jacobi", splitting(jacobi), &plain, 5, {}, "whfast512"},
-          {"jacobi, relativity", splitting(jacobi, bend), &plain, 5, {}, "whfast512", true},
-          {"jacobi, compensated", splitting(jacobi), &plain, 5, compensated},
-          {"democratic", splitting(democratic), &plain, 5},
-          {"democratic, relativity", splitting(democratic, bend), &plain, 5},
-          {"democratic, compensated", splitting(democratic), &plain, 5, compensated},
-          {"jacobi, composed kernel", splitting(jacobi), &plain, 5, {.kernel = StepKernel::composed}},
-          {"jacobi, lazy kernel", splitting(jacobi), &plain, 5, {.kernel = StepKernel::lazy}},
-          {"jacobi, modified kernel", splitting(jacobi), &plain, 5, {.kernel = StepKernel::modified}},
-          {"aba_10_6_4", splitting(jacobi), &fine, 40, {}, "saba(10,6,4)"},
-          {"letters", splitting(jacobi, no_field), &plain, 5, {}, "whfast"},
-          {"letters, compensated", splitting(jacobi, no_field), &plain, 5, compensated}};
+  return {
+      {"jacobi", splitting(jacobi), &plain, 5, {}, "whfast512"},
+      {"jacobi, relativity", splitting(jacobi, bend), &plain, 5, {}, "whfast512", true},
+      {"jacobi, compensated", splitting(jacobi), &plain, 5, compensated},
+      {"democratic", splitting(democratic), &plain, 5},
+      {"democratic, relativity", splitting(democratic, bend), &plain, 5},
+      {"democratic, compensated", splitting(democratic), &plain, 5, compensated},
+      {"jacobi, composed kernel", splitting(jacobi), &plain, 5, {.kernel = StepKernel::composed}, "whfast composition"},
+      {"jacobi, lazy kernel", splitting(jacobi), &plain, 5, {.kernel = StepKernel::lazy}, "whfast lazy"},
+      {"jacobi, modified kernel",
+       splitting(jacobi),
+       &plain,
+       5,
+       {.kernel = StepKernel::modified},
+       "whfast modifiedkick"},
+      {"aba_10_6_4", splitting(jacobi), &fine, 40, {}, "saba(10,6,4)"},
+      {"letters", splitting(jacobi, no_field), &plain, 5, {}, "whfast"},
+      {"letters, compensated", splitting(jacobi, no_field), &plain, 5, compensated}};
 }
 
 /// Processor time of a step [ns].
@@ -131,23 +141,90 @@ void measure(const bench::Rows& rows, const std::string& system, const ParticleS
   }
 }
 
-void count_passes(const bench::Rows& rows, const ParticleSystem<double>& bodies) {
-  constexpr std::int64_t steps = 100'000;
+using Starts = std::vector<ParticleSystem<double>>;
+
+/// How often arcs in lanes need more than one evaluation, and what a step takes there: 100 000 steps in all.
+void count_passes(const bench::Rows& rows, const std::string& system, const Starts& starts, double step) {
+  constexpr std::int64_t slices = 20, steps = 5'000;
   for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic}) {
-    for (const double step : {1, 3, 5, 6, 7, 8, 10, 15, 20, 40}) {
-      auto s = bodies;
+    std::int64_t second = 0, exact = 0;
+    std::optional<double> closest;
+    std::vector<double> taken;
+    for (ParticleSystem<double> s : starts) {
       s.clock() = Clock<double>::fixed(0, step);
       Composition integrator(WisdomHolman({.coordinates = coordinates}), schemes::verlet_aba);
       integrator.bind(s);
-      integrator.advance(s, {.steps = steps});
-      const PlanetLanes& lanes = integrator.hamiltonian().lanes();
-      const std::string name =
-          fmt::format("{}, {} d", coordinates == Coordinates::jacobi ? "jacobi" : "democratic", step);
-      const auto share = [&](std::int64_t count) {
-        return bench::Measured({static_cast<double>(count) / static_cast<double>(steps)});
-      };
-      rows.add(name, "second_passes_per_step", share(lanes.second_passes()), "1", bodies.size());
-      rows.add(name, "exact_arcs_per_step", share(lanes.exact_arcs()), "1", bodies.size());
+      for (std::int64_t slice = 0; slice < slices / std::ssize(starts); ++slice) {
+        const double seconds = bench::processor_seconds_of([&] {
+          if (integrator.advance(s, {.steps = steps}).failure != nullptr) throw Error("'" + system + "' failed");
+        });
+        taken.push_back(1e9 * seconds / static_cast<double>(steps));
+      }
+      second += integrator.hamiltonian().lanes().second_passes();
+      exact += integrator.hamiltonian().lanes().exact_arcs();
+      const auto met = integrator.evaluations().encounter;
+      if (met && met->hill_radii < closest.value_or(encounter_hill_radii)) closest = met->hill_radii;
+    }
+    const std::string name =
+        fmt::format("{}, {}", coordinates == Coordinates::jacobi ? "jacobi" : "democratic", system);
+    const auto add = [&](const std::string& metric, const bench::Measured& value, const std::string& unit) {
+      rows.add(name, metric, value, unit, starts.front().size());
+    };
+    const auto share = [&](std::int64_t count) {
+      return bench::Measured({static_cast<double>(count) / static_cast<double>(slices * steps)});
+    };
+    add("second_passes_per_step", share(second), "1");
+    add("exact_arcs_per_step", share(exact), "1");
+    add("step_ns", bench::Measured(taken), "ns");
+    if (closest) add("closest_approach", bench::Measured({*closest}), "Hill radii");
+  }
+}
+
+constexpr double turn = 6.283185307179586;
+
+/// Planets of equal masses and eccentricities about a star, in units in which the innermost one turns once in 2 pi; the
+/// axis of each is `ratio` times that of the one within. Phases, pericentres and inclinations up to 0.01 are random.
+ParticleSystem<double> equal_planets(int planets, double mass, double ratio, double e, unsigned seed = 1) {
+  ParticleSystem<double> s;
+  s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  double a = 1;
+  for (int k = 0; k < planets; ++k, a *= ratio) {
+    const double E = turn * uniform(random), w = turn * uniform(random), tilt = 0.01 * uniform(random);
+    const double rate = 1 / (std::sqrt(a) * (1 - e * std::cos(E))), flat = std::sqrt(1 - e * e);
+    const auto turned = [&](double p, double q) {
+      const double up = std::sin(w) * p + std::cos(w) * q;
+      return Vec3<double>(std::cos(w) * p - std::sin(w) * q, up * std::cos(tilt), up * std::sin(tilt));
+    };
+    s.add("planet " + std::to_string(k), mass, turned(a * (std::cos(E) - e), a * flat * std::sin(E)),
+          turned(-rate * std::sin(E), flat * rate * std::cos(E)));
+  }
+  move_to_barycenter(s);
+  return s;
+}
+
+void count_all_passes(const bench::Rows& rows, const ParticleSystem<double>& solar_system) {
+  for (const double days : {1, 3, 5, 6, 7, 8, 10, 15, 20, 40}) {
+    count_passes(rows, fmt::format("{} d", days), {solar_system}, days);
+  }
+  constexpr double light = 1e-7, heavy = 1e-5, step = turn / 20;
+  for (const double e : {0.05, 0.3, 0.6, 0.8, 0.95}) {
+    const ParticleSystem<double> s = equal_planets(8, light, 1.5, e);
+    count_passes(rows, fmt::format("e = {}", e), {s}, step);
+    count_passes(rows, fmt::format("e = {}, by pericentre", e), {s}, step * std::sqrt(std::pow(1 - e, 3) / (1 + e)));
+  }
+  for (const int planets : {1, 2, 4, 8, 9, 16, 30}) {
+    const std::string name = fmt::format("{} planet{}", planets, planets > 1 ? "s" : "");
+    count_passes(rows, name, {equal_planets(planets, light, 1.3, 0.05)}, step);
+  }
+  for (const int planets : {2, 8}) {
+    for (const double apart : {10, 6, 4, 3, 2, 1}) {
+      Starts starts;
+      for (unsigned seed = 1; seed <= 20; ++seed) {
+        starts.push_back(equal_planets(planets, heavy, 1 + apart * std::cbrt(2 * heavy / 3), 0, seed));
+      }
+      count_passes(rows, fmt::format("{} planets, {} apart", planets, apart), starts, step);
     }
   }
 }
@@ -219,7 +296,7 @@ int main(int count, char** arguments) {
   const std::filesystem::path examples = std::filesystem::path(NOETHER_SOURCE_DIR) / "examples";
   const ParticleSystem<double> planets = load_scene(examples / "solar_system" / "scene.toml").particles;
   if (rows.wants("steps")) measure(rows, "solar_system", planets, variants(), peer);
-  if (rows.wants("passes")) count_passes(rows, planets);
+  if (rows.wants("passes")) count_all_passes(rows, planets);
   if (rows.wants("outer")) {
     const Scene outer = load_scene(examples / "outer_solar_system" / "scene.toml");
     std::vector<Variant> words;

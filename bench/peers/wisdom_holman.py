@@ -2,8 +2,8 @@
 processor seconds of the steps alone, or with `-` where this machine or this version cannot do it; ends at once where the
 program is absent. Peers are never needed: the benchmark continues without.
 
-A case: {"G": ..., "method": "whfast512" | "whfast" | "saba(10,6,4)", "relativity": whether as a potential, "step": ...,
-"steps": ..., "bodies": [[m, x, y, z, vx, vy, vz], ...]}."""
+A case: {"G": ..., "method": "whfast512" | "whfast" | "whfast KERNEL" | "saba(10,6,4)",
+"relativity": whether as a potential, "step": ..., "steps": ..., "bodies": [[m, x, y, z, vx, vy, vz], ...]}."""
 
 import json
 import math
@@ -30,7 +30,8 @@ def start(case, rebound):
     massive = sum(1 for body in case["bodies"] if body[0] > 0)
     if massive < len(case["bodies"]):
         sim.N_active = massive
-    sim.integrator = {"whfast512": "whfast512", "whfast": "whfast", "saba(10,6,4)": "saba"}[case["method"]]
+    name, _, kernel = case["method"].partition(" ")
+    sim.integrator = "saba" if name == "saba(10,6,4)" else name
     sim.dt = case["step"] * second
     if case["method"] == "whfast512":
         sim.integrator.concatenate_steps = case["steps"]
@@ -41,6 +42,8 @@ def start(case, rebound):
         sim.integrator.safe_mode = 0
         if case["method"] == "saba(10,6,4)":
             sim.integrator.type = "10_6_4"
+        if kernel:
+            sim.integrator.kernel = kernel
     return sim
 
 
