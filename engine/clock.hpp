@@ -72,6 +72,13 @@ template <class Real> class Clock {
 
   /// Time at step `n` of a fixed clock [time].
   double time_at(std::int64_t n) const { return start_ + static_cast<double>(n) * dt_; }
+  /// Time of the last whole step [time].
+  double at_step() const { return mode_ == ClockMode::fixed ? time_at(step_) : high_; }
+  /// How far time `t` lies beyond the last whole step [time], rounded by nothing but `t` itself.
+  Quad until(double t) const {
+    const Quad whole = mode_ == ClockMode::fixed ? Quad(start_) + Quad(step_) * Quad(dt_) : Quad(high_) + Quad(low_);
+    return Quad(t) - whole;
+  }
 
   void set_fraction(const Real& c) { fraction_ = c; }
   Real fraction() const { return fraction_; }
@@ -93,8 +100,12 @@ template <class Real> class Clock {
     ++step_;
     stage_offset_ = Real(0);
   }
-  /// Puts the free clock of a copy to time `t` [time]; the step count stays.
+  /// Puts the clock of a copy to time `t` [time], a fixed one within a step; the step count stays.
   void move_to(double t) {
+    if (mode_ == ClockMode::fixed) {
+      fraction_ = Real(until(t) / Quad(dt_));
+      return;
+    }
     high_ = t;
     low_ = 0;
     stage_offset_ = Real(0);

@@ -136,6 +136,7 @@ struct IntegratorClaims {
   std::int64_t steps_at_once = 1;   ///< where nobody looks, so many steps cost less each than one
   bool variables = false;           ///< it advances the variables of a first-order system, not particles
   bool second_words = false;        ///< of settled particles they are further digits of x and v
+  bool between_steps = false;       ///< fixed clock: it settles at times between two steps too
 };
 
 /// How far to go: so many steps, and with a free clock not past `limit` [time], which lies on the way of that clock.
@@ -156,7 +157,8 @@ struct Advance {
 
 /// A method that advances a system by whole steps. `settle` completes a copy for observers: the copy is inertial, and
 /// with a free clock it is reached at time `at` by one shortened step, and its clock moved there without counting a
-/// step; the run itself never shortens a step. `bind` comes before `load` and may see working coordinates then.
+/// step; the run itself never shortens a step. With a fixed clock `at` is given to integrators alone that claim
+/// `between_steps`. `bind` comes before `load` and may see working coordinates then.
 ///
 /// A method whose steps are symplectic may offer `Advance advance_with_action(s, span, action)`: the same bits as
 /// `advance`, and the action increments of its flows, the integral of p dq - H dt, added to `action`. Its `settle` then

@@ -92,6 +92,17 @@ std::int64_t steps_to(double time, double start, double dt) {
   return static_cast<std::int64_t>(std::abs(whole));
 }
 
+StepBefore step_before(double time, double start, double dt) {
+  const double exact = (time - start) / dt, whole = std::round(exact);
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const double far = start == 0 ? 0 : 4 * epsilon * std::max(std::abs(time), std::abs(start)) / std::abs(dt);
+  if (!(std::abs(exact) <= 9e15)) return {std::numeric_limits<std::int64_t>::max(), false};
+  if (std::abs(exact - whole) <= 1e-9 + 16 * epsilon * std::abs(exact) + std::min(far, 0.01)) {
+    return {static_cast<std::int64_t>(whole), true};
+  }
+  return {static_cast<std::int64_t>(std::floor(exact)), false};
+}
+
 std::int64_t first_multiple(double after, double start, double dt, std::int64_t cadence) {
   const double exact = (after - start) / dt;
   if (!(exact > 0)) return 0;

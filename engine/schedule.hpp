@@ -50,6 +50,13 @@ double look_by_interval(double start, std::int64_t k, double interval);
 void check_times(const std::vector<double>& times, double start, double sign, const std::string& monitor);
 /// @throws Error  unless the times of a list follow each other at one distance, to 1e-9
 void check_equal_intervals(const std::vector<double>& times, const std::string& monitor);
+/// The last whole step at or before a time [time], and whether it is at the time itself but for rounding, as
+/// `steps_to` has it.
+struct StepBefore {
+  std::int64_t step = 0;
+  bool whole = false;
+};
+StepBefore step_before(double time, double start, double dt);
 /// The steps of a list of times; each is later than the one before. @throws Error  as `steps_to`, and for two at one
 /// step
 std::vector<std::int64_t> steps_at(const std::vector<double>& times, double start, double dt,

@@ -105,7 +105,8 @@ template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
     added.name = fmt::format("{}_{}", base, k);
   }
   if (added.schedule.steps == 0 && added.schedule.wall == 0) schedule_by_time(added);
-  if (added.schedule.after && raw_.clock().mode() == ClockMode::fixed) {  // steps tell from here on
+  if (added.schedule.after && added.schedule.by_steps() && raw_.clock().mode() == ClockMode::fixed) {
+    // Steps tell from here on.
     added.schedule.from = std::exchange(added.schedule.after, {});
     added.schedule.first =
         detail::first_multiple(*added.schedule.from, raw_.clock().start(), raw_.clock().dt(), added.schedule.steps);
@@ -134,7 +135,9 @@ template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) 
     throw Error(fmt::format("monitor '{}' cannot sample every {} of time; a finite time {} 0 is expected", added.name,
                             interval, forward ? "above" : "below"));
   }
-  if (raw_.clock().mode() == ClockMode::free) {
+  const double dt = raw_.clock().dt();
+  const bool between = integrator_.claims().between_steps && !detail::step_before(interval, 0, dt).whole;
+  if (raw_.clock().mode() == ClockMode::free || between) {
     // One that comes late has nothing to say of times that have passed.
     const double from = has_begun(added, time()) ? time() : *added.schedule.after;
     const double passed = std::floor((from - raw_.clock().start()) / interval);
@@ -144,8 +147,7 @@ template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) 
   }
   const std::int64_t steps = steps_in(interval);
   if (steps == 0) {
-    throw Error(fmt::format("monitor '{}' cannot sample every {} of time; a step is {}", added.name, interval,
-                            raw_.clock().dt()));
+    throw Error(fmt::format("monitor '{}' cannot sample every {} of time; a step is {}", added.name, interval, dt));
   }
   added.schedule.steps = steps;
 }
@@ -165,7 +167,10 @@ template <class Real> void Simulation<Real>::schedule_at_times(Scheduled& added)
   if (!times.empty()) times[0] = detail::at_start_if_rounded(times[0], clock.start());
   detail::check_times(times, clock.start(), clock.sign(), added.name);
   if (added.monitor.needs_equal_intervals()) detail::check_equal_intervals(times, added.name);
-  if (clock.mode() == ClockMode::fixed) {
+  const bool between = integrator_.claims().between_steps && std::any_of(times.begin(), times.end(), [&](double t) {
+                         return !detail::step_before(t, clock.start(), clock.dt()).whole;
+                       });
+  if (clock.mode() == ClockMode::fixed && !between) {
     added.schedule.at_steps = detail::steps_at(times, clock.start(), clock.dt(), added.name);
     return;
   }
@@ -229,6 +234,10 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
   std::int64_t unclocked = 0;  // steps since the last look at the wall clock, which costs as much as a short step
   while (true) {
     if ((result = observe_due())) break;
+    if (const auto unreached = observe_between(step() >= end)) {
+      result = fail_before(*unreached);
+      break;
+    }
     if (step() >= end) break;
     if (step() - good_->particles.clock().step() >= longest_chunk && (result = keep_good())) break;
     if (stop_flag_ != nullptr && stop_flag_->load(std::memory_order_relaxed)) {
@@ -337,7 +346,7 @@ template <class Real> Outcome Simulation<Real>::fall_back() {
 /// Stops that were not due at the last step look at it too, and forget what they saw: a run that goes on later is the
 /// run that was never cut.
 template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end() {
-  const bool between_steps = shown_at_ && raw_.clock().is_later(*shown_at_, raw_.clock().high());
+  const bool between_steps = shown_at_ && raw_.clock().is_later(*shown_at_, raw_.clock().at_step());
   const Snapshot<Real> moment = snapshot({}, between_steps ? shown_at_ : std::nullopt);
   for (const ScheduledStop& stop : stops_) {
     if (!between_steps && detail::is_multiple(step(), stop.steps)) continue;
@@ -357,7 +366,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end()
 /// that is told of must be one that can be read. A run that is interrupted goes on.
 template <class Real> void Simulation<Real>::show_to_writers(const Outcome& ended) {
   if (ended.kind == Outcome::Kind::completed || ended.kind == Outcome::Kind::interrupted) return;
-  const bool between_steps = shown_at_ && raw_.clock().is_later(*shown_at_, raw_.clock().high());
+  const bool between_steps = shown_at_ && raw_.clock().is_later(*shown_at_, raw_.clock().at_step());
   const Snapshot<Real> moment = snapshot({}, between_steps ? shown_at_ : std::nullopt);
   if (fault(moment.state())) return;
   for (Scheduled& scheduled : monitors_) {
@@ -452,67 +461,15 @@ template <class Real> void Simulation<Real>::show(const Snapshot<Real>& moment) 
   }
 }
 
-/// Whether the run comes to that time: a method that chooses its steps may fail on the way from the last whole one.
-template <class Real> bool Simulation<Real>::observe_times(double until) {
-  looking_.clear();
-  Request wanted;
-  for (auto& scheduled : monitors_) {
-    if (!scheduled.schedule.by_time() || raw_.clock().is_later(next_look(scheduled), until)) continue;
-    ++scheduled.observed;
-    looking_.push_back(&scheduled);
-    wanted.energy = wanted.energy || scheduled.wanted.energy;
-  }
-  const Snapshot<Real> moment = snapshot(wanted, until);
-  if (fault(moment.state())) return false;
-  if (!looking_.empty()) show(moment);
-  return true;
-}
-
-template <class Real> void Simulation<Real>::observe_rounded(double limit) {
-  const Clock<Real>& clock = raw_.clock();
-  const double end = limit + clock.sign() * detail::rounding_of(limit, clock.start());
-  for (double look = next_time(clock.never()); !clock.is_later(look, end); look = next_time(clock.never())) {
-    if (observe_times(look)) continue;
-    for (Scheduled* one : looking_) --one->observed;  // it fails behind the end; a longer run will tell
-    return;
-  }
-}
-
-/// Makes the steps that lead to a time which cannot be shown. Mostly the run fails on the way there; where it does not,
-/// as where a shorter step that ends there cannot be made, it ends at the last whole step before that time.
-template <class Real> Outcome Simulation<Real>::fail_before(double unreached) {
-  keep();
-  const Span one{.steps = 1, .limit = raw_.clock().never()};
-  while (integrator_.advance(raw_, one).failure == nullptr && !fault(raw_)) {
-    if (!raw_.clock().is_later(raw_.clock().high(), unreached)) continue;
-    raw_.assign_state(good_->particles);
-    integrator_.load(good_->integrator, "");
-    return outcome(Outcome::Kind::solver_failure,
-                   fmt::format("no step of '{}' that ends at time {:.9g} succeeds, where the state is to be shown, "
-                               "though the run itself steps past it; choose other times",
-                               integrator_.claims().method, unreached));
-  }
-  return fall_back();
-}
-
 template <class Real> std::int64_t Simulation<Real>::next_cut(std::int64_t end) const {
   std::int64_t cut = std::min(end, step() + chunk_);
   for (const auto& scheduled : monitors_) {
     if (scheduled.schedule.by_steps()) cut = std::min(cut, scheduled.schedule.next(step()));
+    const bool between = scheduled.schedule.by_time() && raw_.clock().mode() == ClockMode::fixed;
+    if (between) cut = std::min(cut, step_of_look(scheduled).step);
   }
   for (const auto& stop : stops_) cut = std::min(cut, detail::next_multiple(step(), stop.steps));
   return cut;
-}
-
-template <class Real> double Simulation<Real>::next_time(double end) const {
-  double next = end;
-  if (raw_.clock().mode() == ClockMode::fixed) return next;
-  for (const auto& scheduled : monitors_) {
-    if (!scheduled.schedule.by_time()) continue;
-    const double look = next_look(scheduled);
-    if (raw_.clock().is_later(next, look)) next = look;
-  }
-  return next;
 }
 
 template <class Real> std::optional<Outcome> Simulation<Real>::fault(const ParticleSystem<Real>& s) const {

@@ -57,7 +57,7 @@ template <class Real = double> class Simulation {
   /// Attaches a monitor or writer that looks at these times of the clock [time], in the order in which the run comes to
   /// them; those beyond its end are never seen. Bits of the trajectory do not depend on it.
   /// @throws Error  for no times, one that is not finite, before the start or out of order, and where steps are of one
-  ///                length and a time is no whole number of them
+  ///                length and a time is no whole number of them, unless the integrator claims `between_steps`
   template <class M> M& at_times(std::vector<double> times, M monitor) {
     return *attach(AnyMonitor<Real>(std::move(monitor)), {.times = std::move(times)}).template get<M>();
   }
@@ -172,6 +172,11 @@ template <class Real = double> class Simulation {
   bool observe_times(double until);
   /// Takes the looks that are due at the end `limit` but for rounding, at their own times: those of a longer run.
   void observe_rounded(double limit);
+  /// Takes the looks by time that are due from the last whole step of a fixed clock on, before the next one; at the
+  /// last step of a run, `at_end`, those behind it are left to a longer run. @return a time that cannot be shown
+  std::optional<double> observe_between(bool at_end);
+  /// Where the next look of a monitor by time lies on a fixed clock.
+  detail::StepBefore step_of_look(const Scheduled& s) const;
   Outcome fail_before(double unreached);
   bool due(const Scheduled& scheduled) const;
   /// Whether a time is one at which a monitor that begins later looks.

@@ -71,6 +71,9 @@ template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
       looks.at_steps = detail::steps_at(looks.times, clock.start(), clock.dt(), scheduled.name);
     if (looks.from) looks.first = detail::first_multiple(*looks.from, clock.start(), clock.dt(), looks.steps);
     load_value(part(scheduled.name), "observed", scheduled.observed);
+    if (looks.by_time() && clock.mode() == ClockMode::fixed) {
+      while (step_of_look(scheduled).step < step()) ++scheduled.observed;  // it may have looked at whole steps
+    }
     scheduled.monitor.load(part(scheduled.name), "state");
   }
   for (std::size_t k = 0; k < stops_.size(); ++k) stops_[k].check.load(part(fmt::format("stop_{}", k)), "state");

@@ -20,7 +20,7 @@ struct RunSource {
 template <class Real> class Snapshot {
  public:
   /// @param copy, mapped  storage for the settled copies, reused from one moment to the next
-  /// @param at  free clock: the time to be shown, not beyond the next whole step
+  /// @param at  the time to be shown between the last whole step and the next one
   /// @param action  of the run's flows in the step before this moment, where it was asked for
   Snapshot(AnyIntegrator<Real>& integrator, const ParticleSystem<Real>& raw, ParticleSystem<Real>& copy,
            ParticleSystem<Real>& mapped, Request wanted, const std::optional<double>& at, const Real& action,
@@ -87,11 +87,7 @@ template <class Real> class Snapshot {
   Motion<Real> motion(Index i) const { return {state().positions()[i], state().velocities()[i], accelerations()[i]}; }
   std::int64_t step() const { return raw_.clock().step(); }
   /// Time of this moment [time].
-  double time() const {
-    return at_                                       ? *at_
-           : raw_.clock().mode() == ClockMode::fixed ? raw_.clock().time_at(raw_.clock().step())
-                                                     : raw_.clock().high();
-  }
+  double time() const { return at_.value_or(raw_.clock().at_step()); }
   IntegratorClaims claims() const { return integrator_.claims(); }
   const UnitSystem& units() const { return raw_.units(); }
   /// The whole run as it stands, unsettled: only checkpoints have any business here.
@@ -103,7 +99,7 @@ template <class Real> class Snapshot {
   ParticleSystem<Real>& copy_;
   ParticleSystem<Real>& mapped_;
   Request wanted_;
-  std::optional<double> at_;  ///< free clock: a time after the last whole step [time]
+  std::optional<double> at_;  ///< a time after the last whole step [time]
   Real action_;
   RunSource run_;
   mutable Real settling_action_ = Real(0);

@@ -25,7 +25,8 @@ template <class Real> IntegratorClaims Classical<Real>::claims() const {
           .keeps_momentum = field.keeps_momentum,
           .keeps_angular_momentum = field.keeps_angular_momentum && method.keeps_angular_momentum,
           .variables = field.variables,
-          .second_words = method.second_words};
+          .second_words = method.second_words,
+          .between_steps = !method.adaptive && method_->dense()};
 }
 
 template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
@@ -66,7 +67,7 @@ template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
 template <class Real> Advance Classical<Real>::advance(ParticleSystem<Real>& s, const Span& span) {
   Advance done;
   const bool fixed = s.clock().mode() == ClockMode::fixed;
-  const double most = fixed ? s.clock().dt() : longest_step(s.clock());
+  const double most = longest_step(s.clock());
   field_->gather(s, y_);
   Vector<Real>* const low = method_->low_words();
   if (low != nullptr) detail::gather_low_words(s, *low);
@@ -140,15 +141,20 @@ Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Rea
   const Evaluations counted = field_->evaluations();
   look_ahead(raw, *at);
   field_->scatter(y_, out);
-  if (Vector<Real>* const low = ahead_ ? ahead_->method->low_words() : nullptr) detail::scatter_low_words(*low, out);
+  if (ahead_) {
+    const bool inside = ahead_->method->dense() && ahead_->h != 0;
+    const Vector<Real>* const low = inside ? ahead_->method->interpolated_low_words() : ahead_->method->low_words();
+    if (low != nullptr) detail::scatter_low_words(*low, out);
+  }
   out.wrap();
   field_->evaluations() = counted;
   out.clock().move_to(*at);
-  return Real(0);  // at whole steps nothing is left to do, and with steps of its own choice no action is told
+  return Real(0);  // at whole steps nothing is left to do, and between them no action is told
 }
 
-/// Signed as time runs. @param clock  a free one
+/// Signed as time runs.
 template <class Real> double Classical<Real>::longest_step(const Clock<Real>& clock) const {
+  if (clock.mode() == ClockMode::fixed) return clock.dt();
   return choice_.options.max_step ? std::copysign(*choice_.options.max_step, clock.never()) : clock.never();
 }
 
@@ -157,25 +163,22 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
   constexpr double resolution = 4 * std::numeric_limits<double>::epsilon();  // as in `underflow`
   const bool dense = method_->dense();
   const Clock<Real>& clock = raw.clock();
-  const double begin = clock.high();
-  const bool known = dense && ahead_ && ahead_->from == clock.step() && !clock.is_later(ahead_->t, at);
+  const bool known = dense && ahead_ && ahead_->from == clock.step() && !clock.is_later(ahead_->begin.at_step(), at);
   if (!known) {
-    ahead_ = Ahead{method_->clone(), clock.step(), begin, 0, {}};
+    ahead_ = Ahead{method_->clone(), clock.step(), clock, clock, 0, {}};
     field_->gather(raw, ahead_->y);
     if (Vector<Real>* const low = ahead_->method->low_words()) detail::gather_low_words(raw, *low);
     y_ = ahead_->y;
   }
-  // The first step begins at the double-double time of the run, later ones where the one before has ended.
-  while (clock.is_later(at, ahead_->t + ahead_->h)) {
-    ahead_->t += ahead_->h;
-    const Real t = ahead_->t == begin ? clock.time() : Real(ahead_->t);
+  while (clock.is_later(at, ahead_->end.at_step())) {
+    const Clock<Real>& now = ahead_->begin = ahead_->end;
     double most = longest_step(clock);
-    if (!dense && clock.is_later(ahead_->t + most, at)) most = at - ahead_->t;
+    if (!dense && clock.is_later(now.at_step() + most, at)) most = static_cast<double>(now.until(at));
     field_->forget_failure();
-    const StepResult made = ahead_->method->step(*field_, t, ahead_->y, most);
+    const StepResult made = ahead_->method->step(*field_, now.time(), ahead_->y, most);
     // A sum of times is rounded: what that leaves may be shorter than any step, and the state is the one after the
     // last.
-    if (made.failure && !dense && std::abs(at - ahead_->t) <= resolution * std::abs(at)) break;
+    if (made.failure && !dense && std::abs(at - now.at_step()) <= resolution * std::abs(at)) break;
     // What fails here fails in the run as well, or ends it here.
     if (made.failure || !(std::abs(made.h) > 0)) {
       y_.setConstant(Real(std::numeric_limits<double>::quiet_NaN()));
@@ -183,11 +186,15 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
       return;
     }
     ahead_->h = made.h;
+    if (now.mode() == ClockMode::fixed) {
+      ahead_->end.tick(Real(0));
+    } else {
+      ahead_->end.advance(made.h);
+    }
     y_ = ahead_->y;
   }
-  if (dense && ahead_->h != 0) {
-    ahead_->method->interpolate(*field_, (Real(at) - Real(ahead_->t)) / Real(ahead_->h), y_);
-  }
+  if (!dense || ahead_->h == 0) return;
+  ahead_->method->interpolate(*field_, Real(ahead_->begin.until(at) / Quad(ahead_->h)), y_);
 }
 
 template <class Real> std::string Classical<Real>::signature() const {

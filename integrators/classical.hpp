@@ -17,7 +17,8 @@ namespace noether {
 /// Advances a vector field by a classical method, with fixed steps or with steps of the method's own choice.
 ///
 /// An adaptive run is shown at times of its choice from dense output, or, where the method has none as good as itself,
-/// by steps that end there, made on a copy: the run never shortens a step.
+/// by steps that end there, made on a copy: the run never shortens a step. One of fixed steps is shown at times between
+/// them where the method has dense output, of a step that a copy makes.
 /// @cost the evaluations of the method, and one copy of y in and out each time the run is cut
 template <class Real> class Classical {
  public:
@@ -61,9 +62,10 @@ template <class Real> class Classical {
   /// A copy of the method on its way past the last whole step of the run, for observers.
   struct Ahead {
     std::unique_ptr<Method<Real>> method;
-    std::int64_t from = 0;  ///< step of the run it started at
-    double t = 0, h = 0;    ///< its last step, from t to t + h [time]
-    Vector<Real> y;         ///< at t + h
+    std::int64_t from = 0;   ///< step of the run it started at
+    Clock<Real> begin, end;  ///< of its last step
+    double h = 0;            ///< the length of that [time]; 0: there was none
+    Vector<Real> y;          ///< at its end
   };
 
   std::unique_ptr<VectorField<Real>> field_;

@@ -70,6 +70,8 @@ template <class Real> class Method {
   virtual void interpolate(VectorField<Real>& /*f*/, const Real& /*theta*/, Vector<Real>& /*y*/) {
     throw LogicError("dense output was requested from a method that has none");
   }
+  /// Second words of what `interpolate` told last; null for a method without `low_words`.
+  virtual const Vector<Real>* interpolated_low_words() const { return nullptr; }
 
   /// Whether `action` knows what a step is the stationary point of: a symplectic method over particles may.
   virtual bool has_action() const { return false; }

@@ -372,7 +372,9 @@ class SceneReader {
       for (auto& [key, value] : *stop.effective.get<SceneValue::Table>()) effective.put(key, value);
       if (reader.has("every")) {
         effective.erase("steps");
-        stop.steps = read_cadence(reader, false, scene_.integrator, effective).steps;
+        SceneIntegrator at_steps = scene_.integrator;  // distances are looked at at whole steps
+        at_steps.between_steps = false;
+        stop.steps = read_cadence(reader, false, at_steps, effective).steps;
       }
       if (stop.steps == 0) {
         reader.fail(

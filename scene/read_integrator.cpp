@@ -79,6 +79,13 @@ std::string not_whole(const SceneIntegrator& integrator, const UnitSystem& units
 /// Where a time between two steps goes.
 enum class Between : std::uint8_t { later, nearest };
 
+/// Whether a duration lies between two steps, of a method that tells states there.
+bool is_between(const SceneIntegrator& integrator, double duration) {
+  if (!integrator.between_steps) return false;
+  const auto [exact, whole] = steps_to(integrator, duration, 0);
+  return !whole && exact <= most_steps;
+}
+
 /// How many steps lead from `from`, the start of a run or 0 for a duration, to the time that a key gives: at least 1.
 /// A time between two steps goes to one of them, which is noted.
 /// @throws SceneError  for a time that lies behind; with `exact` for one between two steps, too, with the nearest two
@@ -369,7 +376,7 @@ std::vector<ListedTime> times_in_file(const TableReader& reader, const SceneValu
   return all;
 }
 
-/// Takes the times of a list to whole steps, one after the other.
+/// Takes the times of a list to whole steps, one after the other, unless the method tells states between them.
 class StepsOfList {
  public:
   StepsOfList(const SceneIntegrator& integrator, const UnitSystem& units) : integrator_(integrator), units_(units) {}
@@ -380,6 +387,7 @@ class StepsOfList {
     const auto [exact, whole] = steps_to(integrator_, one.time, start);
     if (exact > most_steps)
       refuse(one, fmt::format("is {:.3g} steps of {}, more than can be counted", exact, integrator_.step_text));
+    if (!whole && integrator_.between_steps) return true;
     if (!whole && integrator_.exact) refuse(one, not_whole(integrator_, units_, exact, start));
     const std::int64_t step = whole ? *whole : std::llround(exact);
     const bool same = step == last_, may_be_same = !whole || last_moved_;
@@ -495,6 +503,9 @@ SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& t
   effective.put("method", SceneValue::of(made.method, reader.line("method")));
   SceneValue options = SceneValue::table();
   if (made.classical) read_method_options(reader, parts, made, constrained, options);
+  if (made.classical && !made.adaptive()) {
+    made.between_steps = make_method<double>(*made.classical->info, made.classical->options)->dense();
+  }
   read_step(reader, made, effective);
   read_start_time(reader, made, effective);
   made.exact = reader.flag("exact", false);
@@ -517,7 +528,9 @@ Cadence read_cadence(TableReader& reader, bool may_be_wall, const SceneIntegrato
     reader.fail(key, fmt::format("{} has two cadences; give only one of {}", reader.what(), choices));
   }
   Cadence cadence;
-  if (every != nullptr && integrator.adaptive()) {
+  const bool by_time =
+      every != nullptr && (integrator.adaptive() || is_between(integrator, reader.number(*every, "every", "time")));
+  if (by_time) {
     cadence.interval = reader.number(*every, "every", "time");
     const bool forward = integrator.direction() == Direction::forward;
     if (cadence.interval == 0)
@@ -556,7 +569,7 @@ void read_after(TableReader& reader, const SceneIntegrator& integrator, Cadence&
     fail(fmt::format("lies before the start at {}; give a later time", time_text(start, units)));
   // The first look of the cadence, as the run will take it.
   double first = time;
-  if (integrator.step != 0 && !integrator.adaptive()) {
+  if (integrator.step != 0 && !integrator.adaptive() && cadence.steps > 0) {
     first = start +
             integrator.step * static_cast<double>(detail::first_multiple(time, start, integrator.step, cadence.steps));
   } else if (cadence.interval != 0) {

@@ -230,7 +230,8 @@ std::string times_after_the_end(const SceneWatch& watch, const Scene& scene) {
   const std::vector<double>& times = watch.cadence.times;
   if (!length || times.empty()) return "";
   const double start = scene.integrator.start;
-  const double grace = scene.integrator.adaptive() ? 0 : std::abs(scene.integrator.step) / 2;
+  const double rounding = scene.integrator.between_steps ? 1e-8 : 0.5;
+  const double grace = scene.integrator.adaptive() ? 0 : rounding * std::abs(scene.integrator.step);
   const auto later = [&](double time) { return std::abs(time - start) > std::abs(*length) + grace; };
   const auto count = std::count_if(times.begin(), times.end(), later);
   if (count == 0) return "";

@@ -210,7 +210,9 @@ std::vector<double> times_to_meet(const Scene& scene, double end) {
       if (time != scene.integrator.start) times.push_back(time - scene.integrator.start);
     }
     if ((*tables)[k].find("every") == nullptr) continue;
-    times.push_back(static_cast<double>(scene.watches[k].cadence.steps) * scene.integrator.step);
+    const Cadence& cadence = scene.watches[k].cadence;
+    times.push_back(cadence.interval != 0 ? cadence.interval
+                                          : static_cast<double>(cadence.steps) * scene.integrator.step);
   }
   return times;
 }

@@ -108,7 +108,7 @@ void EnckeGauss::bind(const VectorField<double>& f) {
   }
   stage_.setZero(f.size());
   stage_push_.setZero(f.size() / 2);
-  low_.setZero(f.size());
+  for (Vector<double>* words : {&low_, &start_, &start_low_, &inside_low_}) words->setZero(f.size());
   h_ = 0;
 }
 
@@ -155,6 +155,9 @@ void EnckeGauss::scatter(Vector<double>& y) {
 
 StepResult EnckeGauss::step(VectorField<double>& f, const double& t, Vector<double>& y, double h) {
   StepResult made{.h = h};
+  t_ = t;
+  start_ = y;
+  start_low_ = low_;
   made.failure = open(y, h);
   if (made.failure) return made;
   if (h == h_) predict();
@@ -365,6 +368,22 @@ bool EnckeGauss::advance_one(std::size_t body, double h) {
     put_words(arc.dv[axis] + DoubleDouble(faster[axis], faster_low[axis]), eight.moved[k + 3], lane);
   }
   return true;
+}
+
+/// A step from where the last one began, whose sweeps begin with the polynomial of its perturbations.
+void EnckeGauss::interpolate(VectorField<double>& f, const double& theta, Vector<double>& y) {
+  y = start_;
+  inside_low_ = start_low_;
+  if (theta == 0) return;
+  EnckeGauss part(*this);
+  const auto inside = inner_polynomial(c_, theta);
+  for (std::size_t i = 0; i < stages; ++i) {
+    for (std::size_t j = 0; j < stages; ++j) part.ahead_[stages * j + i] = inside[i][j];
+  }
+  part.low_ = start_low_;
+  part.h_ = theta * h_;
+  if (part.step(f, t_, y, part.h_).failure) y.setConstant(std::numeric_limits<double>::quiet_NaN());
+  inside_low_ = part.low_;
 }
 
 void EnckeGauss::save(SavedState& saved, const std::string& prefix) const {

@@ -3,6 +3,7 @@
 #include "integrators/all_methods.hpp"
 #include "integrators/methods/collocation_table.hpp"
 #include "integrators/methods/last_polynomial.hpp"
+#include "integrators/methods/wide_gauss_simd.hpp"
 
 #include <fmt/format.h>
 
@@ -23,35 +24,27 @@ constexpr double stages_may_round = 1e-9;
 constexpr int patient_sweeps = 12;
 constexpr int most_stage_sweeps = 60, most_wide_sweeps = 60;
 
-/// r^-3 from r^2; in double-double by one step of Newton's from doubles.
-double inverse_cube(double r2) { return 1 / (r2 * std::sqrt(r2)); }
-DoubleDouble inverse_cube(const DoubleDouble& r2) {
-  const double rough = inverse_cube(r2.high);
-  const DoubleDouble left = 1.0 - r2 * r2 * r2 * DoubleDouble::product(rough, rough);
-  return DoubleDouble::ordered_sum(rough, 0.5 * rough * left.high);
-}
-
-double high_word(double x) { return x; }
-double high_word(const DoubleDouble& x) { return x.high; }
-
-/// The largest change of any stage's rate of a body, relative to its largest rate; `rates` become `fresh`.
-template <class Coordinates> double take_rates(Index n, const Coordinates& fresh, Coordinates& rates) {
+/// The largest change of any stage's rate of one of n bodies, relative to its largest rate; `rates` become `fresh`.
+/// @param words  a number has: 1 or 2
+double take_rates(std::size_t n, std::size_t words, const AlignedVector<double>& fresh, AlignedVector<double>& rates) {
+  const std::size_t size = 8 * words;
   double worst = 0;
-  for (Index i = 0; i < n; ++i) {
-    double change = 0, size = 0;
-    for (std::size_t s = 0; s < fresh.front().size(); ++s) {
+  for (std::size_t i = 0; i < n; ++i) {
+    double change = 0, largest = 0;
+    for (std::size_t s = 0; s < 8; ++s) {
       double change2 = 0, size2 = 0;
-      for (Index k = 0; k < 3; ++k) {
-        const auto at = static_cast<std::size_t>(k * n + i);
-        const double rate = high_word(fresh[at][s]), difference = high_word(fresh[at][s] - rates[at][s]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t at = size * (k * n + i) + s;
+        double difference = fresh[at] - rates[at];
+        if (words > 1) difference += fresh[at + 8] - rates[at + 8];
         change2 += difference * difference;
-        size2 += rate * rate;
+        size2 += fresh[at] * fresh[at];
       }
       if (!(change2 <= change)) change = change2;  // a NaN stays
-      if (!(size2 <= size)) size = size2;
+      if (!(size2 <= largest)) largest = size2;
     }
     if (change == 0) continue;
-    const double relative = change / size;
+    const double relative = change / largest;
     if (!std::isfinite(relative)) return relative;
     worst = std::max(worst, relative);
   }
@@ -65,15 +58,17 @@ WideGauss::WideGauss(std::string_view name) : name_(name), ahead_(last_polynomia
   const CollocationTable& table = gauss_table(stages);
   const auto twice = table.twice();
   const auto twice_end = table.twice_end();
-  const auto put = [](const Quad& x, double& high, DoubleDouble& both) {
-    high = static_cast<double>(x);
-    both = DoubleDouble(x);
+  const auto put = [](const Quad& x, double(&words)[2][8], std::size_t lane) {
+    const DoubleDouble both(x);
+    words[0][lane] = both.high;
+    words[1][lane] = both.low;
   };
   for (std::size_t i = 0; i < stages; ++i) {
-    put(table.c[i], table_.c[i], wide_table_.c[i]);
-    put(table.b[i], table_.b[i], wide_table_.b[i]);
-    put(twice_end[i], table_.twice_end[i], wide_table_.twice_end[i]);
-    for (std::size_t j = 0; j < stages; ++j) put(twice[i][j], table_.twice[i][j], wide_table_.twice[i][j]);
+    c_[i] = static_cast<double>(table.c[i]);
+    b_[i] = DoubleDouble(table.b[i]);
+    twice_end_[i] = DoubleDouble(twice_end[i]);
+    put(table.c[i], weights_.c, i);
+    for (std::size_t j = 0; j < stages; ++j) put(twice[i][j], weights_.twice[j], i);
   }
 }
 
@@ -84,21 +79,28 @@ void WideGauss::bind(const VectorField<double>& f) {
   coordinates_ = 3 * n_;
   const Vector<double> masses = f.masses();
   gm_.clear();
-  for (Index i = 0; i < n_; ++i) gm_.push_back(DoubleDouble::product(*G, masses[i]));
+  gm_low_.clear();
+  for (Index i = 0; i < n_; ++i) {
+    const DoubleDouble gm = DoubleDouble::product(*G, masses[i]);
+    gm_.push_back(gm.high);
+    gm_low_.push_back(gm.low);
+  }
   beside_ = f.has_forces_beside_gravity();
   const auto count = static_cast<std::size_t>(coordinates_);
-  x_.assign(count, {});
-  v_.assign(count, {});
-  for (auto* all : {&rates_, &fresh_, &q_, &pushes_}) all->assign(count, Lanes<double>{});
-  for (auto* all : {&wide_rates_, &wide_fresh_, &wide_q_}) all->assign(count, Lanes<DoubleDouble>{});
+  for (auto* all : {&x_, &x_low_, &v_, &v_low_}) all->assign(count, 0);
+  for (auto* all : {&rates_, &fresh_, &q_, &pushes_}) all->assign(stages * count, 0);
+  for (auto* all : {&wide_rates_, &wide_fresh_, &wide_q_}) all->assign(2 * stages * count, 0);
   stage_.setZero(f.size());
   stage_push_.setZero(coordinates_);
-  low_.setZero(f.size());
+  for (Vector<double>* words : {&low_, &start_, &start_low_, &inside_low_}) words->setZero(f.size());
   h_ = 0;
 }
 
 StepResult WideGauss::step(VectorField<double>& f, const double& t, Vector<double>& y, double h) {
   StepResult made{.h = h};
+  t_ = t;
+  start_ = y;
+  start_low_ = low_;
   begin(y, h);
   if (!sweep(f, t, h) || !sweep_wide(f, h)) {
     made.failure = f.failure();
@@ -117,57 +119,17 @@ StepResult WideGauss::step(VectorField<double>& f, const double& t, Vector<doubl
 void WideGauss::begin(const Vector<double>& y, double h) {
   for (std::size_t k = 0; k < x_.size(); ++k) {
     const auto at = static_cast<Index>(k);
-    x_[k] = DoubleDouble::sum(y[at], low_[at]);
-    v_[k] = DoubleDouble::sum(y[coordinates_ + at], low_[coordinates_ + at]);
-    const Lanes<double> before = rates_[k];
-    rates_[k].fill(0);
+    const DoubleDouble x = DoubleDouble::sum(y[at], low_[at]);
+    const DoubleDouble v = DoubleDouble::sum(y[coordinates_ + at], low_[coordinates_ + at]);
+    x_[k] = x.high, x_low_[k] = x.low;
+    v_[k] = v.high, v_low_[k] = v.low;
+    double* const rates = &rates_[stages * k];
+    Lanes<double> before;
+    std::copy_n(rates, stages, before.begin());
+    std::fill_n(rates, stages, 0.0);
     if (h != h_) continue;
     for (std::size_t i = 0; i < stages; ++i) {
-      for (std::size_t j = 0; j < stages; ++j) rates_[k][i] += ahead_[i][j] * before[j];
-    }
-  }
-}
-
-/// Positions of all stages from their rates.
-template <class Real>
-void WideGauss::place(const Table<Real>& table, double h, const Coordinates<Real>& rates, Coordinates<Real>& q) const {
-  const Real step(h), square = step * step;
-  for (std::size_t k = 0; k < q.size(); ++k) {
-    Real x, way;
-    if constexpr (std::is_same_v<Real, double>) {
-      x = x_[k].high;
-      way = h * v_[k].high;
-    } else {
-      x = x_[k];
-      way = step * v_[k];
-    }
-    for (std::size_t i = 0; i < stages; ++i) {
-      Real sum = table.twice[i][0] * rates[k][0];
-      for (std::size_t j = 1; j < stages; ++j) sum += table.twice[i][j] * rates[k][j];
-      q[k][i] = x + (table.c[i] * way + square * sum);
-    }
-  }
-}
-
-/// Accelerations by gravity at all stages.
-template <class Real> void WideGauss::attract(const Coordinates<Real>& q, Coordinates<Real>& rates) const {
-  for (auto& rate : rates) rate.fill(Real(0));
-  const auto n = static_cast<std::size_t>(n_);
-  for (std::size_t i = 1; i < n; ++i) {
-    const Real mi(static_cast<Real>(gm_[i]));
-    for (std::size_t j = 0; j < i; ++j) {
-      const Real mj(static_cast<Real>(gm_[j]));
-      if (mi == Real(0) && mj == Real(0)) continue;
-      for (std::size_t s = 0; s < stages; ++s) {
-        const Real x = q[j][s] - q[i][s], y = q[n + j][s] - q[n + i][s], z = q[2 * n + j][s] - q[2 * n + i][s];
-        const Real cube = inverse_cube(x * x + y * y + z * z), of_i = mj * cube, of_j = mi * cube;
-        rates[i][s] += of_i * x;
-        rates[n + i][s] += of_i * y;
-        rates[2 * n + i][s] += of_i * z;
-        rates[j][s] -= of_j * x;
-        rates[n + j][s] -= of_j * y;
-        rates[2 * n + j][s] -= of_j * z;
-      }
+      for (std::size_t j = 0; j < stages; ++j) rates[i] += ahead_[i][j] * before[j];
     }
   }
 }
@@ -175,26 +137,26 @@ template <class Real> void WideGauss::attract(const Coordinates<Real>& q, Coordi
 /// Forces that are not gravity of points, at the stages as doubles have them: they are evaluated in doubles.
 void WideGauss::add_forces_beside(VectorField<double>& f, double t, double h) {
   if (!beside_) return;
+  const auto n = static_cast<std::size_t>(coordinates_);
   for (std::size_t s = 0; s < stages; ++s) {
-    for (std::size_t k = 0; k < q_.size(); ++k) stage_[static_cast<Index>(k)] = q_[k][s];
-    f.accelerations_beside_gravity(t + table_.c[s] * h, stage_, stage_push_);
-    for (std::size_t k = 0; k < q_.size(); ++k) pushes_[k][s] = stage_push_[static_cast<Index>(k)];
+    for (std::size_t k = 0; k < n; ++k) stage_[static_cast<Index>(k)] = q_[stages * k + s];
+    f.accelerations_beside_gravity(t + c_[s] * h, stage_, stage_push_);
+    for (std::size_t k = 0; k < n; ++k) pushes_[stages * k + s] = stage_push_[static_cast<Index>(k)];
   }
 }
 
 /// Sweeps in doubles. @return whether the rates stand still but for rounding
 bool WideGauss::sweep(VectorField<double>& f, double t, double h) {
+  const WideGaussStart start{coordinates_, x_.data(), x_low_.data(), v_.data(), v_low_.data()};
   double before = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= most_stage_sweeps; ++round) {
-    place(table_, h, rates_, q_);
-    attract(q_, fresh_);
+    wide_gauss_kernels().place(weights_, start, h, rates_.data(), q_.data());
+    wide_gauss_kernels().attract(n_, gm_.data(), gm_low_.data(), q_.data(), fresh_.data());
     f.evaluations().force += stages;
     add_forces_beside(f, t, h);
     if (f.failure()) return false;
-    for (std::size_t k = 0; beside_ && k < fresh_.size(); ++k) {
-      for (std::size_t s = 0; s < stages; ++s) fresh_[k][s] += pushes_[k][s];
-    }
-    const double change = take_rates(n_, fresh_, rates_);
+    for (std::size_t k = 0; beside_ && k < fresh_.size(); ++k) fresh_[k] += pushes_[k];
+    const double change = take_rates(static_cast<std::size_t>(n_), 1, fresh_, rates_);
     if (!std::isfinite(change)) return false;
     const double shrinks = round > 1 ? change / before : 1;
     if (change * std::min(shrinks, 1.0) <= settled_stages) return true;
@@ -209,18 +171,23 @@ bool WideGauss::sweep(VectorField<double>& f, double t, double h) {
 
 /// Sweeps in double-double, from where doubles have led. @return whether the rates stand still
 bool WideGauss::sweep_wide(VectorField<double>& f, double h) {
+  const WideGaussStart start{coordinates_, x_.data(), x_low_.data(), v_.data(), v_low_.data()};
   for (std::size_t k = 0; k < rates_.size(); ++k) {
-    for (std::size_t s = 0; s < stages; ++s) wide_rates_[k][s] = rates_[k][s];
+    wide_rates_[k + k / stages * stages] = rates_[k];
+    wide_rates_[k + (k / stages + 1) * stages] = 0;
   }
   double before = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= most_wide_sweeps; ++round) {
-    place(wide_table_, h, wide_rates_, wide_q_);
-    attract(wide_q_, wide_fresh_);
+    wide_gauss_kernels().place_wide(weights_, start, h, wide_rates_.data(), wide_q_.data());
+    wide_gauss_kernels().attract_wide(n_, gm_.data(), gm_low_.data(), wide_q_.data(), wide_fresh_.data());
     f.evaluations().force += stages;
-    for (std::size_t k = 0; beside_ && k < wide_fresh_.size(); ++k) {
-      for (std::size_t s = 0; s < stages; ++s) wide_fresh_[k][s] += DoubleDouble(pushes_[k][s]);
+    for (std::size_t k = 0; beside_ && k < pushes_.size(); ++k) {
+      double &high = wide_fresh_[k + k / stages * stages], &low = wide_fresh_[k + (k / stages + 1) * stages];
+      const DoubleDouble pushed = DoubleDouble(high, low) + DoubleDouble(pushes_[k]);
+      high = pushed.high;
+      low = pushed.low;
     }
-    const double change = take_rates(n_, wide_fresh_, wide_rates_);
+    const double change = take_rates(static_cast<std::size_t>(n_), 2, wide_fresh_, wide_rates_);
     if (!std::isfinite(change)) return false;
     const double shrinks = round > 1 ? change / before : 1;
     if (round > 1 && change * std::min(shrinks, 1.0) <= settled_wide) return true;
@@ -233,13 +200,16 @@ bool WideGauss::sweep_wide(VectorField<double>& f, double h) {
 void WideGauss::finish(Vector<double>& y, double h) {
   const DoubleDouble step(h), square = DoubleDouble::product(h, h);
   for (std::size_t k = 0; k < x_.size(); ++k) {
+    const double* const rates = &wide_rates_[2 * stages * k];
     DoubleDouble way, speed;
     for (std::size_t j = 0; j < stages; ++j) {
-      way += wide_table_.twice_end[j] * wide_rates_[k][j];
-      speed += wide_table_.b[j] * wide_rates_[k][j];
-      rates_[k][j] = wide_rates_[k][j].high;
+      const DoubleDouble rate(rates[j], rates[stages + j]);
+      way += twice_end_[j] * rate;
+      speed += b_[j] * rate;
+      rates_[stages * k + j] = rate.high;
     }
-    const DoubleDouble x = x_[k] + (step * v_[k] + square * way), v = v_[k] + step * speed;
+    const DoubleDouble x0(x_[k], x_low_[k]), v0(v_[k], v_low_[k]);
+    const DoubleDouble x = x0 + (step * v0 + square * way), v = v0 + step * speed;
     const auto at = static_cast<Index>(k);
     y[at] = x.high;
     low_[at] = x.low;
@@ -248,21 +218,29 @@ void WideGauss::finish(Vector<double>& y, double h) {
   }
 }
 
+/// A step from where the last one began, whose sweeps begin with the polynomial of its rates.
+void WideGauss::interpolate(VectorField<double>& f, const double& theta, Vector<double>& y) {
+  y = start_;
+  inside_low_ = start_low_;
+  if (theta == 0) return;
+  WideGauss part(*this);
+  part.ahead_ = inner_polynomial(c_, theta);
+  part.low_ = start_low_;
+  part.h_ = theta * h_;
+  if (part.step(f, t_, y, part.h_).failure) y.setConstant(std::numeric_limits<double>::quiet_NaN());
+  inside_low_ = part.low_;
+}
+
 void WideGauss::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "h", h_);
-  std::vector<double> rates;
-  for (const auto& rate : rates_) rates.insert(rates.end(), rate.begin(), rate.end());
-  save_value(saved, prefix + "rates", rates);
+  save_value(saved, prefix + "rates", std::vector<double>(rates_.begin(), rates_.end()));
 }
 
 void WideGauss::load(const SavedState& saved, const std::string& prefix) {
   load_value(saved, prefix + "h", h_);
   std::vector<double> rates;
   load_value(saved, prefix + "rates", rates);
-  std::size_t at = 0;
-  for (auto& rate : rates_) {
-    for (double& x : rate) x = detail::element(rates, at++);
-  }
+  for (std::size_t k = 0; k < rates_.size(); ++k) rates_[k] = detail::element(rates, k);
 }
 
 namespace methods {

@@ -118,7 +118,45 @@ TEST_CASE("times of a list between steps go to the nearest, those that meet ther
   CHECK(has(refused.err, "times contains 0.101, which is 10.1 steps of 0.01"));
 }
 
+TEST_CASE("methods with dense output are shown at times between steps as they are", "[cli][run][messages]") {
+  const SceneFolder folder(between_steps);
+  const std::string run = "run scene.toml --json --set integrator.method=encke_gauss_8 ";
+  const ProcessResult result = noether(folder, run);
+  INFO(result.err);
+  CHECK(result.exit_code == 0);
+  CHECK(line_count(result.err) == 2);  // the end and the stop are at whole steps
+  CHECK(result.err.starts_with(until_note + "note: scene.toml:27: every = \"2 hour\" is 0.08333"));
+  CHECK(json_member(result.out, "step") == "366");
+  CHECK(json_member(json_member(result.out, "energy"), "samples") == "36");  // 0, 10.4, ..., 364 days
+  const std::string whole = "--set integrator.until='366 day' --set stop.0.every='1 day' --set integrator.exact=true";
+  const ProcessResult bare = noether(folder, run + "--out b " + whole + " --set every.0.every='61 day'");
+  CHECK(bare.err.empty());
+  CHECK(json_member(bare.out, "digest") == json_member(result.out, "digest"));
+  CHECK(noether(folder, run + "--out c " + whole).exit_code == 0);
+  const SceneFolder listed(replaced(between_steps, "every = \"10.4 day\"",
+                                    "times = [\"0 day\", \"10.4 day\", \"11 day\", \"365.9 day\", \"366.1 day\"]"));
+  const ProcessResult list = noether(listed, run);
+  INFO(list.err);
+  CHECK(json_member(json_member(list.out, "energy"), "samples") == "4");
+  const ProcessResult told = noether(listed, "run scene.toml --out b --set integrator.method=encke_gauss_8");
+  CHECK(has(told.out + told.err, "1 of 5 times of 'energy' lies after the end at 366 day"));
+}
+
 #if NOETHER_HDF5
+
+TEST_CASE("frames between steps are those of an unbroken run", "[cli][resume]") {
+  const std::string scene = between_steps + "[[every]]\ntype = \"trajectory\"\nevery = \"0.7 day\"\n";
+  const SceneFolder folder(scene), other(scene);
+  const std::string method = " --set integrator.method=encke_gauss_8";
+  CHECK(noether(folder, "run scene.toml --quiet --until '100.5 day'" + method).exit_code == 0);
+  const ProcessResult longer = noether(folder, "run scene.toml --json --resume --until '200 day'" + method);
+  INFO(longer.err);
+  CHECK(longer.exit_code == 0);
+  CHECK(json_member(longer.out, "resumed_from_step") == "101");
+  check_same_run(longer.out, noether(other, "run scene.toml --json --until '200 day'" + method).out);
+  check_same_content(folder / "scene.out/run.h5", other / "scene.out/run.h5");
+  CHECK(noether(folder, "verify scene.out/run.h5").exit_code == 0);
+}
 
 TEST_CASE("a run that ended between two steps goes on, to the same later end as one long run", "[cli][resume]") {
   const SceneFolder folder, other;

@@ -177,12 +177,6 @@ TEST_CASE("steps with bodies too near to each other for errors below 1e-18 are c
   CHECK(planets.evaluations().unsettled == 0);
 }
 
-TEST_CASE("times between two steps are refused by name", "[encke]") {
-  auto run = encke_run(outer_planets(), 300, attraction_of_outer_planets);
-  CHECK_THROWS_WITH(run.at_times({300, 750}, Energy{}),
-                    Catch::StartsWith("monitor 'energy' cannot sample at time 750: ") && Catch::Contains("2.5 steps"));
-}
-
 TEST_CASE("an encounter that steps jump over ends the run by name", "[encke]") {
   // Two planets on one circle, against each other: they pass at a thousandth of its radius.
   ParticleSystem<double> s;
