@@ -65,8 +65,7 @@ SceneTable particles() {
       "Which particles there are. They come from `bodies`, from `[[particles.body]]` tables, from both, from a "
       "`structure`, or from a builder (`type`).",
       fields({
-          {"bodies", "text", "1", "",
-           "file of bodies: CSV, vector tables of JPL Horizons, or the run.h5 of a run"},
+          {"bodies", "text", "1", "", "file of bodies: CSV, vector tables of JPL Horizons, or the run.h5 of a run"},
           {"bodies_sha256", "text", "1", "", "the SHA-256 of the file; another file is refused"},
           {"structure", "text", "1", "", "file of a structure: LAMMPS data, (extended) XYZ or .gro"},
           {"structure_sha256", "text", "1", "", "the SHA-256 of the file; another file is refused"},
@@ -229,7 +228,7 @@ SceneTable integrator(const Parts& parts) {
        "the time at which the run ends, at the first whole step at or after it; or steps"},
       {"steps", "whole number", "1", "", "how many steps the run has, in place of until"},
       {"start_time", "number", "time", "0", "what the clock shows at the start"},
-      {"exact", "flag", "1", "false", "true: refuses times that are not whole numbers of steps"},
+      {"exact", "flag", "1", "false", "true: refuses times between two steps where the method has no states"},
   }));
   for (const OptionGroup* group : parts.method_options()) {
     for (const OptionValue& one : group->values({})) {
@@ -254,7 +253,8 @@ SceneTable every() {
       "A monitor or a writer, and its times: one of `every`, `steps` and `times`. Without any such table a run "
       "has `energy` and about 200 frames; `every = []`, above all tables, leaves both out.",
       fields({{"type", "text", "1", "", "a monitor or a writer", "\"energy\""},
-              {"every", "number", "time", "", "time between two samples, rounded to a whole number of steps"},
+              {"every", "number", "time", "",
+               "time between two samples; to the nearest step where the method has no states between two"},
               {"steps", "whole number", "1", "", "steps between two samples"},
               {"times", "list", "time", "", "samples at these times only; or the name of a file with one time a line"},
               {"after", "number", "time", "", "with `every` or `steps`: no samples before this time of the clock"},

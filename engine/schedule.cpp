@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 namespace noether::detail {
 
@@ -101,6 +102,21 @@ StepBefore step_before(double time, double start, double dt) {
     return {static_cast<std::int64_t>(whole), true};
   }
   return {static_cast<std::int64_t>(std::floor(exact)), false};
+}
+
+void take_to_steps(Looks& looks, double start, double dt) {
+  if (looks.interval != 0) {
+    looks.steps = std::max<std::int64_t>(1, std::llround(looks.interval / dt));
+    if (looks.after) {
+      looks.from = std::exchange(looks.after, {});
+      looks.first = first_multiple(*looks.from, start, dt, looks.steps);
+    }
+    return;
+  }
+  for (const double time : looks.times) {
+    const std::int64_t step = std::llround((time - start) / dt);
+    if (looks.at_steps.empty() || step > looks.at_steps.back()) looks.at_steps.push_back(step);
+  }
 }
 
 std::int64_t first_multiple(double after, double start, double dt, std::int64_t cadence) {

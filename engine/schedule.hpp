@@ -101,6 +101,10 @@ struct Looks : Schedule {
   std::int64_t next_listed(std::int64_t step) const;
 };
 
+/// Takes looks by time to the nearest whole steps, at least one from each other: where earlier versions had them with
+/// steps of one length.
+void take_to_steps(Looks& looks, double start, double dt);
+
 }  // namespace detail
 
 }  // namespace noether

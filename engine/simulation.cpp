@@ -139,10 +139,12 @@ template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) 
   const bool between = integrator_.claims().between_steps && !detail::step_before(interval, 0, dt).whole;
   if (raw_.clock().mode() == ClockMode::free || between) {
     // One that comes late has nothing to say of times that have passed.
+    const Clock<Real>& clock = raw_.clock();
     const double from = has_begun(added, time()) ? time() : *added.schedule.after;
-    const double passed = std::floor((from - raw_.clock().start()) / interval);
+    const double passed = std::floor((from - clock.start()) / interval);
     if (passed > 0 && passed < 9e15) added.observed = static_cast<std::int64_t>(passed);
-    while (raw_.clock().is_later(from, next_look(added))) ++added.observed;
+    const double rounding = clock.sign() * detail::rounding_of(from, clock.start());
+    while (clock.is_later(from, next_look(added) + rounding)) ++added.observed;
     return;
   }
   const std::int64_t steps = steps_in(interval);
@@ -235,7 +237,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
   while (true) {
     if ((result = observe_due())) break;
     if (const auto unreached = observe_between(step() >= end)) {
-      result = fail_before(*unreached);
+      result = fault(raw_) ? fall_back() : fail_before(*unreached);
       break;
     }
     if (step() >= end) break;
@@ -379,8 +381,13 @@ template <class Real>
 bool Simulation<Real>::has_looked(const Scheduled& scheduled, double end, bool between_steps) const {
   if (scheduled.schedule.by_steps()) return !between_steps && due(scheduled);
   if (!scheduled.schedule.by_time() || scheduled.observed == 0 || !has_begun(scheduled, end)) return false;
-  const double start = raw_.clock().start();
-  return std::abs(look_of(scheduled, scheduled.observed - 1) - end) <= detail::rounding_of(end, start);
+  const Clock<Real>& clock = raw_.clock();
+  const double last = look_of(scheduled, scheduled.observed - 1);
+  if (clock.mode() == ClockMode::fixed && !between_steps) {
+    const detail::StepBefore look = detail::step_before(last, clock.start(), clock.dt());
+    return look.whole && look.step == step();
+  }
+  return std::abs(last - end) <= detail::rounding_of(end, clock.start());
 }
 
 template <class Real> std::int64_t Simulation<Real>::unresolved() const {

@@ -177,6 +177,10 @@ template <class Real = double> class Simulation {
   std::optional<double> observe_between(bool at_end);
   /// Where the next look of a monitor by time lies on a fixed clock.
   detail::StepBefore step_of_look(const Scheduled& s) const;
+  /// Whether a monitor looks by time though steps are of one length.
+  bool looks_between(const Scheduled& s) const {
+    return s.schedule.by_time() && raw_.clock().mode() == ClockMode::fixed;
+  }
   Outcome fail_before(double unreached);
   bool due(const Scheduled& scheduled) const;
   /// Whether a time is one at which a monitor that begins later looks.

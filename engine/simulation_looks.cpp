@@ -19,7 +19,10 @@ template <class Real> bool Simulation<Real>::observe_times(double until) {
   const Clock<Real>& clock = raw_.clock();
   const bool at_step = clock.mode() == ClockMode::fixed && detail::step_before(until, clock.start(), clock.dt()).whole;
   const Snapshot<Real> moment = snapshot(wanted, at_step ? std::nullopt : std::optional(until));
-  if (fault(moment.state())) return false;
+  if (fault(moment.state())) {
+    for (Scheduled* one : looking_) --one->observed;
+    return false;
+  }
   if (!looking_.empty()) show(moment);
   return true;
 }
@@ -28,9 +31,7 @@ template <class Real> void Simulation<Real>::observe_rounded(double limit) {
   const Clock<Real>& clock = raw_.clock();
   const double end = limit + clock.sign() * detail::rounding_of(limit, clock.start());
   for (double look = next_time(clock.never()); !clock.is_later(look, end); look = next_time(clock.never())) {
-    if (observe_times(look)) continue;
-    for (Scheduled* one : looking_) --one->observed;  // it fails behind the end; a longer run will tell
-    return;
+    if (!observe_times(look)) return;  // it fails behind the end; a longer run will tell
   }
 }
 

@@ -18,6 +18,7 @@ template <class Real> SavedRun Simulation<Real>::save() const {
   for (const auto& scheduled : monitors_) {
     SavedState& state = saved.parts[scheduled.name];
     save_value(state, "observed", scheduled.observed);
+    if (looks_between(scheduled)) save_value(state, "looks_between_steps", std::int64_t{1});
     scheduled.monitor.save(state, "state");
   }
   for (std::size_t k = 0; k < stops_.size(); ++k) stops_[k].check.save(saved.parts[fmt::format("stop_{}", k)], "state");
@@ -71,9 +72,8 @@ template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
       looks.at_steps = detail::steps_at(looks.times, clock.start(), clock.dt(), scheduled.name);
     if (looks.from) looks.first = detail::first_multiple(*looks.from, clock.start(), clock.dt(), looks.steps);
     load_value(part(scheduled.name), "observed", scheduled.observed);
-    if (looks.by_time() && clock.mode() == ClockMode::fixed) {
-      while (step_of_look(scheduled).step < step()) ++scheduled.observed;  // it may have looked at whole steps
-    }
+    const bool of_old = looks_between(scheduled) && !part(scheduled.name).contains("looks_between_steps");
+    if (of_old) detail::take_to_steps(looks, clock.start(), clock.dt());
     scheduled.monitor.load(part(scheduled.name), "state");
   }
   for (std::size_t k = 0; k < stops_.size(); ++k) stops_[k].check.load(part(fmt::format("stop_{}", k)), "state");

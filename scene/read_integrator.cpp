@@ -576,7 +576,8 @@ void read_after(TableReader& reader, const SceneIntegrator& integrator, Cadence&
     first = start + cadence.interval * std::ceil((time - start) / cadence.interval * (1 - 1e-12));
   }
   const auto length = integrator.length();
-  const double grace = integrator.adaptive() ? 1e-12 * std::abs(first - start) : std::abs(integrator.step) / 2;
+  const double rounding = cadence.interval != 0 ? 1e-8 : 0.5;  // between two steps, or to the nearest one
+  const double grace = integrator.adaptive() ? 1e-12 * std::abs(first - start) : rounding * std::abs(integrator.step);
   if (length && std::abs(first - start) > std::abs(*length) + grace) {
     const std::string end = time_text(start + *length, units);
     fail(sign * (time - start - *length) > grace

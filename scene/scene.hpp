@@ -63,7 +63,7 @@ struct SceneIntegrator {
   double start = 0;                        ///< what the clock shows at the first step [time]
   std::optional<std::int64_t> steps;       ///< of the whole run; empty if the scene has no end, or one in time
   std::optional<double> until;             ///< [time] by the clock: the end, where the method chooses its steps
-  bool exact = false;                      ///< times between two steps are refused; else they go to one of the two
+  bool exact = false;                      ///< times between two steps are refused where the method has no states there
   bool between_steps = false;              ///< steps are of one length, and the method tells states between them
   CompositionOptions composition;          ///< of the scheme
   std::vector<SceneDecorator> decorators;  ///< the first stands around the method, each further one around all before

@@ -40,11 +40,12 @@ double take_rates(std::size_t n, std::size_t words, const AlignedVector<double>&
         change2 += difference * difference;
         size2 += fresh[at] * fresh[at];
       }
-      if (!(change2 <= change)) change = change2;  // a NaN stays
-      if (!(size2 <= largest)) largest = size2;
+      if (!std::isfinite(change2)) return change2;
+      change = std::max(change, change2);
+      largest = std::max(largest, size2);
     }
     if (change == 0) continue;
-    const double relative = change / largest;
+    const double relative = largest > 0 ? change / largest : 1;
     if (!std::isfinite(relative)) return relative;
     worst = std::max(worst, relative);
   }

@@ -7,6 +7,7 @@
 #include "tests/support/rigid_bodies.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -32,10 +33,11 @@ ParticleSystem<double> satellite(double e, double asphericity, double angle, dou
   return s;
 }
 
-AnyHamiltonian<double> kepler_arcs() {
+AnyHamiltonian<double> kepler_arcs(Coordinates coordinates = Coordinates::jacobi) {
   ForceField<double> figure;
   figure.add(GravityOfBodies{.point_masses = false});
-  return Rotating<AnyHamiltonian<double>>(WisdomHolman<double, ForceField<double>>({}, std::move(figure)));
+  return Rotating<AnyHamiltonian<double>>(
+      WisdomHolman<double, ForceField<double>>({.coordinates = coordinates}, std::move(figure)));
 }
 AnyHamiltonian<double> drifts() {
   ForceField<double> all;
@@ -93,6 +95,50 @@ TEST_CASE("Kepler arcs with turns keep the order of Wisdom-Holman schemes", "[in
   };
   CHECK(std::abs(std::log2(error("verlet_aba", 100) / error("verlet_aba", 200)) - 2) < 0.1);
   CHECK(std::abs(std::log2(error("yoshida_4", 100) / error("yoshida_4", 200)) - 4) < 0.3);
+}
+
+TEST_CASE("free points and tracers beside bodies move on Kepler arcs as by drifts", "[integrators][spin_orbit]") {
+  const auto start = [] {
+    auto s = satellite(0.1, 0.3, 0.4, 1.2, 3e-2);
+    const auto [x, v] = state_of_orbit({.a = 2.3, .e = 0.05, .inc = 0.1}, 1);
+    s.add("point", 1e-3, x, v);
+    const auto [far, slow] = state_of_orbit({.a = 4, .e = 0.2, .inc = 0.3, .M = 2}, 1);
+    s.add("tracer", 0, far, slow);
+    move_to_barycenter(s);
+    return s;
+  };
+  const auto end = [&](AnyHamiltonian<double> h, const std::string& scheme, int steps) {
+    Simulation sim(start(), compose(std::move(h), *schemes::find(scheme)), 4 * pi / steps);
+    REQUIRE(sim.run(steps).ok());
+    return sim.particles();
+  };
+  const auto momentum = [](const ParticleSystem<double>& s) {
+    Vec3<double> all = Vec3<double>::Zero();
+    for (Index i = 0; i < s.size(); ++i) {
+      const Vec3<double> x = s.positions()[i], v = s.velocities()[i], spin = s.column<BodySpin>()[i];
+      all += s.masses()[i] * cross(x, v) + spin;
+    }
+    return all;
+  };
+  const ParticleSystem<double> exact = end(drifts(), "srkn14a", 800), begin = start();
+  for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic, Coordinates::whds}) {
+    const auto errors = [&](int steps) {
+      const ParticleSystem<double> found = end(kepler_arcs(coordinates), "verlet_aba", steps);
+      CHECK(std::sqrt(norm2(Vec3<double>(momentum(found) - momentum(begin)))) < 1e-17);
+      std::array<double, 4> all = {};
+      for (Index i = 1; i < found.size(); ++i) {
+        all[static_cast<std::size_t>(i)] = std::sqrt(norm2(Vec3<double>(found.positions()[i] - exact.positions()[i])));
+      }
+      const Vec3<double> spin = found.column<BodySpin>()[1] - exact.column<BodySpin>()[1];
+      all[0] = std::sqrt(norm2(spin)) / begin.column<BodySpin>()[1][2];
+      return all;
+    };
+    const auto coarse = errors(200), fine = errors(400);
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+      CAPTURE(static_cast<int>(coordinates), i, coarse[i], fine[i]);
+      CHECK(std::abs(std::log2(coarse[i] / fine[i]) - 2) < 0.2);
+    }
+  }
 }
 
 }  // namespace noether

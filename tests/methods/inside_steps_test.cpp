@@ -307,3 +307,61 @@ TEST_CASE("every method with dense output tells states inside steps of one lengt
   }
   CHECK(found >= 4);
 }
+
+TEST_CASE("a run that blows up between two looks ends where it does without any", "[inside]") {
+  const auto end = [](double interval) {
+    ParticleSystem<double> s(unit_system("reduced"));
+    s.add("one", 1, {1, 0, 0}, {0, 0, 0});
+    Simulation<double> run(s, classical_over(field_of(HarmonicField{.k = 1}), method("dop853", {.adaptive = false})),
+                           20.0);
+    if (interval > 0) run.every_time(interval, Energy{});
+    const Outcome outcome = run.run(1000);
+    CHECK(outcome.kind == Outcome::Kind::diverged);
+    CHECK(run.particles().positions().all().allFinite());
+    return run.step();
+  };
+  const std::int64_t step = end(0);
+  CHECK(step > 10);
+  CHECK(end(20.0 * 10.4) == step);
+  CHECK(end(20.0 * 1.3) == step);
+}
+
+TEST_CASE("a look at the time from which on a monitor looks is not lost by rounding", "[inside]") {
+  const double day = 86400;
+  for (const int k : {1, 3, 7, 11, 21}) {
+    auto s = outer_planets();
+    Simulation<double> run(s, classical_over(field_of(pull_inside), method("encke_gauss_8")), day);
+    SeenStates seen;
+    run.every({.interval = 0.7 * day, .after = std::stod(fmt::format("{:.12g}", 0.7 * k)) * day}, StateDiary{&seen});
+    REQUIRE(run.run(20).ok());
+    REQUIRE_FALSE(seen.empty());
+    CAPTURE(k, seen.front().first / day);
+    CHECK(std::abs(seen.front().first / day - 0.7 * k) < 1e-9);
+  }
+}
+
+TEST_CASE("a run that was begun with looks at whole steps keeps them", "[inside][restart]") {
+  const auto begin = [](SeenStates& seen, bool listed) {
+    auto run = orbits_by("encke_gauss_8", outer_planets(), 100, pull_inside);
+    if (listed) {
+      run.at_times({0, 260, 540, 1130}, StateDiary{&seen});
+    } else {
+      run.every_time(260, StateDiary{&seen});
+    }
+    return run;
+  };
+  for (const bool listed : {false, true}) {
+    SeenStates early, late;
+    auto first = begin(early, listed), again = begin(late, listed);
+    REQUIRE(first.run(4).ok());
+    SavedRun saved = first.save();
+    int marks = 0;
+    for (auto& [name, state] : saved.parts) marks += static_cast<int>(state.erase("looks_between_steps"));
+    CHECK(marks == 1);
+    again.restore(saved);
+    REQUIRE(again.run(8).ok());
+    std::vector<double> times;
+    for (const auto& [time, state] : late) times.push_back(time);
+    CHECK(times == (listed ? std::vector<double>{500, 1100} : std::vector<double>{600, 900, 1200}));
+  }
+}
