@@ -323,14 +323,15 @@ TEST_CASE("a run that blows up between two looks ends where it does without any"
   const std::int64_t step = end(0);
   CHECK(step > 10);
   CHECK(end(20.0 * 10.4) == step);
-  CHECK(end(20.0 * 1.3) == step);
 }
 
 TEST_CASE("a look at the time from which on a monitor looks is not lost by rounding", "[inside]") {
   const double day = 86400;
   for (const int k : {1, 3, 7, 11, 21}) {
-    auto s = outer_planets();
-    Simulation<double> run(s, classical_over(field_of(pull_inside), method("encke_gauss_8")), day);
+    ParticleSystem<double> s(unit_system("reduced"));
+    s.add("one", 1, {1, 0, 0}, {0, 0, 0});
+    const auto swing = classical_over(field_of(HarmonicField{.k = 1e-12}), method("dop853", {.adaptive = false}));
+    Simulation<double> run(s, swing, day);
     SeenStates seen;
     run.every({.interval = 0.7 * day, .after = std::stod(fmt::format("{:.12g}", 0.7 * k)) * day}, StateDiary{&seen});
     REQUIRE(run.run(20).ok());
