@@ -144,22 +144,21 @@ void sort_parts(const Scene& scene, Explanation& e) {
   for (const SceneDecorator& decorator : scene.integrator.decorators) {
     e.in.push_back("decorator " + decorator.name + keys_text(decorator.effective));
   }
+  const std::string unit = scene.units->time == "1" ? "" : " " + std::string(scene.units->time);
   for (const SceneWatch& watch : scene.watches) {
     const bool monitor = watch.kind == SceneWatch::Kind::monitor;
     const std::string name = monitor                                      ? "monitor " + watch.monitor.name
                              : watch.kind == SceneWatch::Kind::trajectory ? "writer trajectory"
                                                                           : "writer checkpoint";
     const std::size_t listed = watch.cadence.times.size();
-    const std::string when = listed > 0
-                                 ? fmt::format("at {} of a list", counted(static_cast<std::int64_t>(listed), "time"))
-                             : watch.cadence.wall > 0      ? fmt::format("every {} s of wall time", watch.cadence.wall)
-                             : watch.cadence.interval != 0 ? fmt::format("every {} of time", watch.cadence.interval)
-                                                           : "every " + counted(watch.cadence.steps, "step");
+    const std::string when =
+        listed > 0               ? fmt::format("at {} of a list", counted(static_cast<std::int64_t>(listed), "time"))
+        : watch.cadence.wall > 0 ? fmt::format("every {} s of wall time", watch.cadence.wall)
+        : watch.cadence.interval != 0
+            ? fmt::format("every {:.12g}{}", watch.cadence.interval, unit.empty() ? " of time" : unit)
+            : "every " + counted(watch.cadence.steps, "step");
     const std::string later =
-        watch.cadence.after
-            ? fmt::format(", not before {:.12g}{}", *watch.cadence.after,
-                          scene.units->time == "1" ? std::string() : " " + std::string(scene.units->time))
-            : "";
+        watch.cadence.after ? fmt::format(", not before {:.12g}{}", *watch.cadence.after, unit) : "";
     const std::string cost =
         watch.monitor.cost && listed == 0 ? watch.monitor.cost(scene.particles.size(), watch.cadence.steps) : "";
     e.in.push_back(name + ", " + when + later + (scene.default_watches ? ", by default" : "") +

@@ -218,8 +218,7 @@ std::vector<double> times_to_meet(const Scene& scene, double end) {
 }
 
 /// The longest step, at most `step`, of which all times are whole numbers; `step` cut to the end where there is none.
-double fitted_step(const Scene& scene, double step, double end) {
-  const std::vector<double> times = times_to_meet(scene, end);
+double fitted_step(const std::vector<double>& times, double step, double end) {
   const double shortest = *std::min_element(times.begin(), times.end());
   const auto first = static_cast<std::int64_t>(std::ceil(shortest / step * (1 - 1e-12)));
   for (std::int64_t count = std::max<std::int64_t>(first, 1); count < first + 10'000; ++count) {
@@ -415,7 +414,9 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
     if (!proposal) continue;
     const Candidate& who = proposal->who;
     if (!who.adaptive) {
-      proposal->setting.step = fitted_step(scene, proposal->setting.step, advice.end);
+      const bool between = assemble(variant(scene, who, proposal->setting)).claims().between_steps;
+      proposal->setting.step = fitted_step(between ? std::vector<double>{advice.end} : times_to_meet(scene, advice.end),
+                                           proposal->setting.step, advice.end);
       fit.set_prediction(*proposal, advice.trial_end, advice.end);
     }
     SetLines lines = set_lines(scene, who, proposal->setting, advice.end);

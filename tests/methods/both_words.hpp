@@ -52,4 +52,17 @@ inline Quad energy_of(const ParticleSystem<double>& s, double G) {
   return sum;
 }
 
+/// A weak pull to the origin that cannot be computed beyond some time.
+struct EndingField {
+  double end = 0;
+
+  static ForceClaims claims() {
+    return {.energy = false, .time_dependent = true, .keeps_momentum = false, .keeps_angular_momentum = false};
+  }
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    if (s.time() > Real(end)) out.fail({Outcome::Kind::overlap, 1, "position", "the field has ended"});
+    for (Index i = 0; i < s.size(); ++i) out.acceleration(i, Real(-1e-12) * Vec3<Real>(s.positions()[i]));
+  }
+};
+
 }  // namespace noether::test

@@ -246,27 +246,10 @@ TEST_CASE("methods without dense output refuse times between steps by name", "[i
   CHECK_THROWS(run.every_time(750, Energy{}));
 }
 
-namespace {
-
-/// A pull that cannot be computed beyond some time.
-struct FieldUntil {
-  double end = 0;
-
-  static ForceClaims claims() {
-    return {.energy = false, .time_dependent = true, .keeps_momentum = false, .keeps_angular_momentum = false};
-  }
-  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-    if (s.time() > Real(end)) out.fail({Outcome::Kind::overlap, 1, "position", "the field has ended"});
-    for (Index i = 0; i < s.size(); ++i) out.acceleration(i, Real(-1e-12) * Vec3<Real>(s.positions()[i]));
-  }
-};
-
-}  // namespace
-
 TEST_CASE("a step that fails ends the run as it does without looks inside", "[inside]") {
   for (const char* name : {"encke_gauss_8", "wide_gauss_8"}) {
     CAPTURE(name);
-    auto run = orbits_by(name, outer_planets(), 200, pull_inside, FieldUntil{1000});
+    auto run = orbits_by(name, outer_planets(), 200, pull_inside, EndingField{1000});
     SeenStates seen;
     run.every_time(150, StateDiary{&seen});
     const Outcome outcome = run.run(10);

@@ -284,5 +284,18 @@ TEST_CASE("errors below the rounding of doubles are held by methods of two words
   for (const Candidate& who : advise(scene, options).trials.methods) CHECK_FALSE(who.below_rounding);
 }
 
+TEST_CASE("times between steps do not shorten the steps of a method that has states there", "[advise][two words]") {
+  AdviseOptions options;
+  options.error = 1e-15;
+  options.methods = {"encke_gauss_8"};
+  const auto step = [&](const std::string& looks) {
+    const Advice advice = advise(two_planets("method = \"encke_gauss_8\"\nstep = 0.5\nuntil = 100" + looks), options);
+    INFO(advice.reason);
+    REQUIRE(advice.proposals.size() == 1);
+    return advice.proposals.front().setting.step;
+  };
+  CHECK(step("\n[[every]]\ntype = \"energy\"\ntimes = [1.23, 45.65]\n") == step(""));
+}
+
 }  // namespace
 }  // namespace noether::test
