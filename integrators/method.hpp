@@ -28,6 +28,9 @@ struct MethodClaims {
   bool second_order_only = false;       ///< serves q'' = a only
   bool positions_only = false;          ///< serves q'' = a(t, q) only, no velocity-dependent forces
   bool gravity_only = false;            ///< serves masses of no size that attract each other, and what acts beside that
+  bool energy_exact = false;            ///< keeps the energy of every field that it serves to rounding, at any step
+  bool conservative_only = false;       ///< serves fields with an energy that is conserved, without velocity-dependent
+                                        ///< forces of particles
   bool second_words = false;            ///< its state is `low_words` too
 };
 
