@@ -152,6 +152,8 @@ template <class Real> class VectorField {
   virtual std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>& /*s*/) { return {}; }
   /// Whether all forces know their secants (engine/force_sink.hpp).
   virtual bool has_secant() const { return false; }
+  /// Names of the forces that do not, as messages list them.
+  virtual std::string forces_without_secant() const { return {}; }
   /// Accelerations a, shape (size / 2), for which m a . (q1 - q0) = U(t, q0) - U(t, q1) to rounding, counted.
   /// @throws LogicError  where `has_secant` is false
   virtual void secant(const Real& /*t*/, const Vector<Real>& /*y0*/, const Vector<Real>& /*y1*/, Vector<Real>& /*a*/) {
