@@ -23,7 +23,7 @@ template <class Real> IntegratorClaims Classical<Real>::claims() const {
           .energy = field.energy,
           .dissipative = field.dissipative,
           .time_dependent = field.time_dependent,
-          .keeps_momentum = field.keeps_momentum,
+          .keeps_momentum = field.keeps_momentum && method.keeps_momentum,
           .keeps_angular_momentum = field.keeps_angular_momentum && method.keeps_angular_momentum,
           .variables = field.variables,
           .second_words = method.second_words,
