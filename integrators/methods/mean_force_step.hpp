@@ -1,0 +1,40 @@
+#pragma once
+/// A step of particles under one mean force from its beginning to its end.
+
+#include "integrators/method.hpp"
+#include "integrators/methods/continued_root.hpp"
+
+namespace noether {
+
+/// Accelerations between two states.
+template <class Real> class MeanForce {
+ public:
+  virtual ~MeanForce() = default;
+  /// Accelerations a, shape (size / 2), between the positions of y0 and y1, y = (q, v), the same for both directions.
+  virtual void between(const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) = 0;
+};
+
+/// Solves for u, half of what the velocities change by:
+///
+///     u = (h/2) a(q, q1),   q1 = q + h (v + u),   v1 = v + 2 u
+///
+/// The kinetic energy changes by the work m a . (q1 - q), so the whole energy is kept if that is what the potential
+/// loses; momentum and angular momentum are if a has neither a sum nor a torque about the middle (q + q1)/2. Symmetric
+/// and of order 2 if a is.
+/// @source Gonzalez1996
+template <class Real> class MeanForceStep {
+ public:
+  /// @throws SchemeMismatch  see `ContinuedRoot`
+  void bind(const VectorField<Real>& f, std::optional<JacobianForm> form);
+  /// y becomes the state a step of h later. @return nothing, or why there is none
+  std::optional<Failure> make(MeanForce<Real>& force, Vector<Real>& y, double h, Evaluations& count);
+
+ private:
+  ContinuedRoot<Real> root_;
+  Vector<Real> u_, end_;
+};
+
+extern template class MeanForceStep<double>;
+extern template class MeanForceStep<Quad>;
+
+}  // namespace noether
