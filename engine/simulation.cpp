@@ -117,7 +117,8 @@ template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
 
 template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added) const {
   const IntegratorClaims claims = integrator_.claims();
-  if (claims.variables && (added.monitor.needs_particles() || added.wanted.energy || added.wanted.action)) {
+  const bool lacking = (added.wanted.energy && !claims.energy) || added.wanted.action;
+  if (claims.variables && (added.monitor.needs_particles() || lacking)) {
     throw Error(fmt::format("monitor '{}' watches particles, but system '{}' has only variables", added.name,
                             claims.hamiltonian));
   }

@@ -37,6 +37,8 @@ std::span<const MethodInfo> diagonally_implicit_list();
 std::span<const MethodInfo> newmark_list();
 std::span<const MethodInfo> rosenbrock_list();
 std::span<const MethodInfo> bdf_list();
+std::span<const MethodInfo> discrete_gradient_list();
+std::span<const MethodInfo> simo_tarnow_wong_list();
 
 }  // namespace methods
 

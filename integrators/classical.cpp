@@ -19,15 +19,36 @@ template <class Real> IntegratorClaims Classical<Real>::claims() const {
           .no_action = field.no_action,
           .reversible = method.reversible && !method.adaptive && !field.dissipative,
           .backward = true,
+          .energy_exact = method.energy_exact && field.energy && !field.dissipative && !field.time_dependent,
           .energy = field.energy,
           .dissipative = field.dissipative,
           .time_dependent = field.time_dependent,
-          .keeps_momentum = field.keeps_momentum,
+          .keeps_momentum = field.keeps_momentum && method.keeps_momentum,
           .keeps_angular_momentum = field.keeps_angular_momentum && method.keeps_angular_momentum,
           .variables = field.variables,
           .second_words = method.second_words,
           .between_steps = !method.adaptive && method_->dense()};
 }
+
+namespace {
+
+/// What a method that is made for a conserved energy cannot serve, and why.
+void check_conservative(std::string_view method, const FieldClaims& field) {
+  const auto refuse = [&](const std::string& why) {
+    throw SchemeMismatch(
+        fmt::format("method '{}' keeps the energy, but {}; use 'gauss_4' or another method for y' = f", method, why));
+  };
+  if (field.variables && !field.energy)
+    refuse(fmt::format("system '{}' has rates, and no energy that they keep", field.name));
+  if (field.dissipative) refuse("a force of this run is dissipative");
+  if (field.time_dependent)
+    refuse(field.variables ? fmt::format("system '{}' depends on time", field.name)
+                           : "a force of this run depends on time");
+  if (!field.energy) refuse("a force of this run has none");
+  if (field.second_order && field.velocity_dependent) refuse("a force of this run depends on velocities");
+}
+
+}  // namespace
 
 template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
   const MethodClaims method = method_->claims();
@@ -51,6 +72,7 @@ template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
                     "method for y' = f, such as 'dop853' or 'gauss_8'",
                     method.name));
   }
+  if (method.conservative_only) check_conservative(method.name, field);
   if (method.gravity_only && !field_->gravity_of_points()) {
     throw SchemeMismatch(fmt::format(
         "method '{}' is for masses without softening that attract each other, but '{}' has no such gravity; "

@@ -34,15 +34,34 @@ concept FirstOrderSystem = requires(const S& system, const Real& t, const Vector
   system.rates(t, y, dy);
 };
 
+namespace detail {
+/// The field of a system, over one number type: each kind of system has its own, for instance
+/// `SystemMotion<Lorenz, double>`.
+template <class S, class Real> struct MotionOf;
+
+/// How many variables a system has: one that tells no rates but one function of its coordinates has a momentum for
+/// each of them.
+template <class S> Index variable_count(const S& system) {
+  return FirstOrderSystem<S, double> ? Index(system.size()) : 2 * Index(system.size());
+}
+}  // namespace detail
+
+/// Any kind of system whose motion is known: of first order, or Hamiltonian (integrators/hamiltonian_system.hpp).
+template <class S, class Real>
+concept MovingSystem = requires {
+  typename detail::MotionOf<S, Real>::type;
+};
+
 /// The state a system begins with: `Simulation run(initial_state(Lorenz{}), classical(Lorenz{}, method("dop853")))`.
 /// @throws Error  if the system refuses its fields, or has other numbers of values, names and variables
 template <class S>
 ParticleSystem<double> initial_state(const S& system, std::vector<double> values,
                                      const UnitSystem& units = unit_system("reduced")) {
+  const Index count = detail::variable_count(system);
   const auto check = [&](std::size_t given, const char* what) {
-    if (static_cast<Index>(given) == system.size()) return;
-    throw Error(fmt::format("system '{}' has {} variables, but there are {} {}", detail::name_of(system), system.size(),
-                            given, what));
+    if (static_cast<Index>(given) == count) return;
+    throw Error(
+        fmt::format("system '{}' has {} variables, but there are {} {}", detail::name_of(system), count, given, what));
   };
   check_part(system);
   check(values.size(), "values to start from");
@@ -117,10 +136,16 @@ template <class S, class Real> class SystemMotion final : public VectorField<Rea
   Vector<Dual<Real, 1>> point_, rates_;  ///< work of `derivative`
 };
 
+template <class S, class Real>
+  requires FirstOrderSystem<S, Real>
+struct detail::MotionOf<S, Real> {
+  using type = SystemMotion<S, Real>;
+};
+
 /// A classical method over a system: `classical(Robertson{}, method("rodas_4"))`.
 template <class S>
-  requires FirstOrderSystem<S, double> Classical<double> classical(S system, const MethodChoice& choice) {
-    return Classical<double>(std::make_unique<SystemMotion<S, double>>(std::move(system)), choice);
+  requires MovingSystem<S, double> Classical<double> classical(S system, const MethodChoice& choice) {
+    return Classical<double>(std::make_unique<typename detail::MotionOf<S, double>::type>(std::move(system)), choice);
   }
 
 }  // namespace noether

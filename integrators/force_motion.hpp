@@ -173,6 +173,13 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     return {};
   }
   bool has_secant() const override { return noether::has_secant<Real>(forces_); }
+  std::string forces_without_secant() const override {
+    std::string names;
+    for (const AnyForce<Real>& term : detail::terms_of<Real>(forces_)) {
+      if (!term.has_secant()) names += (names.empty() ? "'" : ", '") + term.name() + "'";
+    }
+    return names;
+  }
   void secant(const Real& t, const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) override {
     if constexpr (requires(ForceSink<Real> & out) { forces_.add_secant_to(out, work_, work_); }) {
       ++this->evaluations().force;

@@ -24,10 +24,15 @@ struct MethodClaims {
   bool adaptive = false;
   bool symplectic = false;              ///< its map is, with fixed steps, for Hamiltonian fields
   bool reversible = false;              ///< a step of -h undoes a step of h
-  bool keeps_angular_momentum = false;  ///< and every quadratic invariant of the field; linear ones all methods keep
+  bool keeps_momentum = true;           ///< where the field does
+  bool keeps_angular_momentum = false;  ///< where the field does; all but energy-exact methods then every quadratic
+                                        ///< invariant
   bool second_order_only = false;       ///< serves q'' = a only
   bool positions_only = false;          ///< serves q'' = a(t, q) only, no velocity-dependent forces
   bool gravity_only = false;            ///< serves masses of no size that attract each other, and what acts beside that
+  bool energy_exact = false;            ///< keeps the energy of every field that it serves to rounding, at any step
+  bool conservative_only = false;       ///< serves fields with an energy that is conserved, without velocity-dependent
+                                        ///< forces of particles
   bool second_words = false;            ///< its state is `low_words` too
 };
 

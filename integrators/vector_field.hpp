@@ -48,6 +48,7 @@ struct FieldClaims {
   std::string name;                ///< of the Hamiltonian or the system
   bool variables = false;          ///< y stands in `ParticleSystem::variables`: a system of first order
   bool second_order = false;       ///< y = (q, v) and q' = v
+  bool canonical = false;          ///< y = (q, p), q' = dH/dp and p' = -dH/dq
   bool velocity_dependent = true;  ///< for second order: v' depends on v
   bool time_dependent = false;
   bool energy = false;  ///< an energy exists
@@ -129,11 +130,13 @@ template <class Real> class VectorField {
   /// The mass of each q, shape (size / 2) [mass]. @throws LogicError  as `potential`
   virtual Vector<Real> masses() const { throw LogicError("masses were requested from a vector field that has none"); }
   /// Kinetic less potential energy at y = (q, v), not counted [energy]. @throws LogicError  as `potential`
-  virtual Real lagrangian(const Real& t, const Vector<Real>& y) {
-    const Vector<Real> m = masses();
-    const Real kinetic =
-        sum_over<Real>(m.size(), [&](Index i) { return m[i] * y[m.size() + i] * y[m.size() + i] / Real(2); });
-    return kinetic - potential(t, y);
+  virtual Real lagrangian(const Real& t, const Vector<Real>& y) { return kinetic(y) - potential(t, y); }
+  /// Whether `hamiltonian` is known. By default where `has_potential`.
+  virtual bool has_hamiltonian() const { return has_potential(); }
+  /// H(t, y) at y = (q, v) of particles or y = (q, p), not counted [energy]. @throws LogicError  as `potential`
+  virtual Real hamiltonian(const Real& t, const Vector<Real>& y) {
+    const Real potential_energy = potential(t, y);
+    return kinetic(y) + potential_energy;
   }
   /// Newton's constant, where masses of no size attract each other [length^3/mass/time^2]; empty where they do not.
   virtual std::optional<double> gravity_of_points() const { return {}; }
@@ -149,6 +152,8 @@ template <class Real> class VectorField {
   virtual std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>& /*s*/) { return {}; }
   /// Whether all forces know their secants (engine/force_sink.hpp).
   virtual bool has_secant() const { return false; }
+  /// Names of the forces that do not, as messages list them.
+  virtual std::string forces_without_secant() const { return {}; }
   /// Accelerations a, shape (size / 2), for which m a . (q1 - q0) = U(t, q0) - U(t, q1) to rounding, counted.
   /// @throws LogicError  where `has_secant` is false
   virtual void secant(const Real& /*t*/, const Vector<Real>& /*y0*/, const Vector<Real>& /*y1*/, Vector<Real>& /*a*/) {
@@ -195,6 +200,11 @@ template <class Real> class VectorField {
   }
 
  private:
+  Real kinetic(const Vector<Real>& y) const {
+    const Vector<Real> m = masses();
+    return sum_over<Real>(m.size(), [&](Index i) { return m[i] * y[m.size() + i] * y[m.size() + i] / Real(2); });
+  }
+
   Evaluations evaluations_;
   std::optional<Failure> failure_;
   ParticleScales scales_;

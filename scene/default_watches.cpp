@@ -144,7 +144,7 @@ void add_default_watches(const SceneContext& context, Scene& scene, const Integr
   scene.default_watches = true;
   SceneValue::Array tables;
   const std::optional<DefaultCadence> when = cadence_of(context, scene, scene.integrator);
-  if (when && !scene.system && claims.energy) {  // every force tells its own
+  if (when && claims.energy) {  // every force tells its own
     if (auto energy = energy_monitor(context, *scene.parts)) {
       SceneWatch watch{SceneWatch::Kind::monitor, std::move(*energy), when->cadence};
       tables.push_back(table_of(watch, watch.monitor.name, *when));

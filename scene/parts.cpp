@@ -29,6 +29,7 @@
 #include "integrators/systems/forced_damped_oscillator.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/systems/lorenz.hpp"
+#include "integrators/systems/nonseparable_oscillator.hpp"
 #include "integrators/systems/prothero_robinson.hpp"
 #include "integrators/systems/rc_ladder.hpp"
 #include "integrators/systems/robertson.hpp"
@@ -169,6 +170,7 @@ Parts standard_parts() {
   parts.add_system<Lorenz>();
   parts.add_system<ProtheroRobinson>();
   parts.add_system<ForcedDampedOscillator>();
+  parts.add_system<NonseparableOscillator>();
   parts.add_monitor<Energy>();
   parts.add_monitor<Momentum>();
   parts.add_monitor<AngularMomentum>();

@@ -7,7 +7,7 @@
 #include "engine/any_force.hpp"
 #include "engine/simulation.hpp"
 #include "forces/sum.hpp"
-#include "integrators/first_order_system.hpp"
+#include "integrators/hamiltonian_system.hpp"
 #include "integrators/method.hpp"
 #include "scene/fields.hpp"
 
@@ -290,9 +290,10 @@ class Parts {
     return *this;
   }
 
-  /// Makes first-order system `S` known by the name it describes itself with; one of the same name is replaced.
+  /// Makes system `S`, of first order or Hamiltonian, known by the name it describes itself with; one of the same name
+  /// is replaced.
   template <class S>
-  requires FirstOrderSystem<S, double> Parts& add_system() {
+  requires MovingSystem<S, double> Parts& add_system() {
     static_assert(Described<S>, "a system in a scene describes itself: static constexpr auto describe()");
     put(systems_, SystemKind{part_info<S>(), [](TableReader& reader) { return read_system<S>(reader); }});
     return *this;
@@ -445,7 +446,7 @@ class Parts {
     if constexpr (requires { system.names(); }) names = system.names();
     std::vector<double> values;
     if (start != nullptr) {
-      values = detail::read_start(reader, *start, system.size(), names);
+      values = detail::read_start(reader, *start, detail::variable_count(system), names);
       made.effective.put("start", *start);
     } else if constexpr (requires { system.start(); }) {
       const double begin = reader.context().start_time;
@@ -459,9 +460,9 @@ class Parts {
       reader.fail(nullptr, "start", fmt::format("{} has no start; give start = [...]", reader.what()));
     }
     made.start = initial_state(system, std::move(values), *reader.context().units);
-    made.field = [system] { return std::make_unique<SystemMotion<S, double>>(system); };
-    if constexpr (FirstOrderSystem<S, Quad>) {
-      made.wide_field = [system] { return std::make_unique<SystemMotion<S, Quad>>(system); };
+    made.field = [system] { return std::make_unique<typename detail::MotionOf<S, double>::type>(system); };
+    if constexpr (MovingSystem<S, Quad>) {
+      made.wide_field = [system] { return std::make_unique<typename detail::MotionOf<S, Quad>::type>(system); };
     }
     return made;
   }

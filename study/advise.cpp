@@ -236,9 +236,7 @@ double fitted_step(const std::vector<double>& times, double step, double end) {
 
 namespace {
 
-bool tells_energy(const Scene& scene) {
-  return !scene.system && scene.particles.size() > 0 && assemble(scene).claims().energy;
-}
+bool tells_energy(const Scene& scene) { return assemble(scene).claims().energy; }
 
 /// Energy errors of a chaotic motion, as that of a liquid, are soon what they are all along: no row of the trials has
 /// to take more than a quarter of its budget. @return when the trials end, by the clock; none: as comparisons do
@@ -386,7 +384,7 @@ void check_request(const Scene& scene, const AdviseOptions& options) {
   if (!(options.error > 0 && options.error < 1)) {
     throw Error(fmt::format("an error of {} cannot be held; a number between 0 and 1 is expected", options.error));
   }
-  if (options.metric == Metric::energy && scene.system) {
+  if (options.metric == Metric::energy && scene.system && !tells_energy(scene)) {
     throw Error(fmt::format("the energy cannot be measured here: system '{}' has none; try --metric position",
                             scene.system->name));
   }

@@ -129,7 +129,7 @@ std::string too_many_evaluations(bool quick) {
 bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const MeasureOptions& options) {
   Simulation<double> sim = assemble(alone);
   const IntegratorClaims claims = sim.claims();
-  const bool particles = alone.particles.size() > 0, energy = claims.energy && particles;
+  const bool particles = alone.particles.size() > 0, energy = claims.energy;
   auto track = std::make_shared<Track>();
   watch(sim, row.setting, sampling,
         Recorder(track, energy, options.states || alone.particles.size() <= most_bodies, row.setting.step,

@@ -167,7 +167,7 @@ class Judge {
     Simulation<double> sim = assemble(variant(scene_, who, {scene_.integrator.step, tolerance_of(scene_)}));
     const RunLength length = length_of(scene_, who);
     const Energy* energy = nullptr;
-    if (sim.claims().energy && scene_.particles.size() > 0) {
+    if (sim.claims().energy) {
       energy = who.adaptive ? &sim.every_time(length.until / RunLength::looks, Energy())
                             : &sim.every(length.between_looks(), Energy());
     }

@@ -341,6 +341,8 @@ SYSTEMS = {
     "lorenz": system("type = 'lorenz'", step=0.01),
     "prothero_robinson": system("type = 'prothero_robinson'; lambda = -100", **STIFF),
     "forced_damped_oscillator": system("type = 'forced_damped_oscillator'"),
+    "nonseparable_oscillator": dataclasses.replace(system("type = 'nonseparable_oscillator'; position = 0.5"),
+                                                   energy=True),
 }
 
 

@@ -1,0 +1,165 @@
+#include "integrators/methods/continued_root.hpp"
+
+#include "integrators/methods/krylov.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace noether {
+
+namespace {
+
+/// Unknowns up to which the matrix is dense by default.
+constexpr Index most_dense_unknowns = 300;
+
+/// Relative length of differences to one side: above the square root of rounding, since a secant is a quotient of small
+/// numbers.
+template <class Real> double secant_difference() {
+  return std::pow(static_cast<double>(std::numeric_limits<Real>::epsilon()), 0.45);
+}
+/// And of central ones: in stiff systems their error is seen times the condition of the matrix.
+template <class Real> double central_difference() {
+  return std::cbrt(static_cast<double>(std::numeric_limits<Real>::epsilon()));
+}
+
+}  // namespace
+
+template <class Real> void ContinuedRoot<Real>::bind(Index unknowns, std::optional<JacobianForm> form) {
+  if (form == JacobianForm::sparse) {
+    throw SchemeMismatch(
+        "jacobian = \"sparse\" needs to know where the tangent of a step can be nonzero, which secants do not tell; "
+        "use "
+        "jacobian = \"matrix_free\" or \"dense\"",
+        {.key = "jacobian"});
+  }
+  matrix_free_ = form ? *form == JacobianForm::matrix_free : unknowns > most_dense_unknowns;
+  for (Vector<Real>* v : {&value_, &residual_, &update_, &moved_, &moved_value_, &trial_, &root_, &before_})
+    v->setZero(unknowns);
+  if (matrix_free_) return;
+  matrix_.resize(unknowns, unknowns);
+  factors_.resize(unknowns);
+}
+
+/// Factors of I - dg/dx at x. @return whether the matrix is regular
+template <class Real>
+bool ContinuedRoot<Real>::renew(StepEquations<Real>& equations, const Real& part, const Vector<Real>& x) {
+  if (matrix_free_) return true;
+  const Real reach = Real(central_difference<Real>()) * equations.reach(part, x);
+  moved_ = x;
+  for (Index j = 0; j < x.size(); ++j) {
+    const Real up = x[j] + reach, down = x[j] - reach;
+    moved_[j] = up;
+    equations.map(part, moved_, moved_value_);
+    moved_[j] = down;
+    equations.map(part, moved_, update_);
+    moved_[j] = x[j];
+    matrix_.col(j) = (update_ - moved_value_) / (up - down);
+    matrix_(j, j) += Real(1);
+  }
+  return factors_.compute(matrix_);
+}
+
+/// Leaves in `update_` what the matrix makes of `residual_`. @return whether its system was solved
+template <class Real>
+bool ContinuedRoot<Real>::correct(StepEquations<Real>& equations, const Real& part, const Vector<Real>& x) {
+  if (!matrix_free_) {
+    factors_.solve(residual_, update_);
+    return true;
+  }
+  const double product = 10 * secant_difference<Real>();
+  const Real reach = Real(secant_difference<Real>()) * equations.reach(part, x);
+  const LinearMap<Real> map = [&](const Vector<Real>& v, Vector<Real>& out) {
+    const Real most = v.cwiseAbs().maxCoeff();
+    out = v;
+    if (!(most > Real(0))) return;
+    const Real factor = reach / most;
+    moved_ = x + factor * v;
+    equations.map(part, moved_, moved_value_);
+    out += (value_ - moved_value_) / factor;
+  };
+  // The next update corrects what this one leaves.
+  return solve_by_krylov(map, residual_, {.residual = 100 * product, .product = product}, update_);
+}
+
+/// Newton's iteration from x, whose updates have to shrink to a quarter or less from the first one on.
+template <class Real>
+typename ContinuedRoot<Real>::Found ContinuedRoot<Real>::contract(StepEquations<Real>& equations, const Real& part,
+                                                                  Vector<Real>& x, Evaluations& count) {
+  constexpr int most = 60;
+  const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
+  const double smooth = 64 * rounding, rough = 1e6 * rounding;
+  double before = 0;
+  bool renews = true, fresh = false;
+  for (int iteration = 0; iteration < most; ++iteration) {
+    equations.map(part, x, value_);
+    residual_ = value_ - x;
+    if (!residual_.allFinite()) return Found::no;
+    if (renews) {
+      ++count.jacobian;
+      if (!renew(equations, part, x)) return Found::no;
+    }
+    fresh = renews;
+    if (!correct(equations, part, x)) return Found::unsolved;
+    x += update_;
+    const double now = equations.size_of(part, update_, x).whole;
+    if (!std::isfinite(now)) return Found::no;
+    const double shrinks = iteration == 0 ? 0 : now / before;
+    if (now == 0 || (iteration > 0 && now * shrinks <= rounding / 64)) return Found::yes;
+    const bool slow = shrinks > 0.25;
+    if (slow && (now <= smooth || (fresh && now <= rough))) return Found::yes;
+    if (slow && (fresh || iteration == 1) && now > rough) return Found::no;
+    renews = matrix_free_ || (iteration > 0 && shrinks > 0.02);
+    before = now;
+  }
+  return Found::no;
+}
+
+/// Follows the root from no step at all; each one and the one before it tell where the next one may be.
+template <class Real>
+std::optional<Failure> ContinuedRoot<Real>::follow(StepEquations<Real>& equations, Vector<Real>& x, double h,
+                                                   Evaluations& count) {
+  constexpr double shortest = 0x1p-12;
+  double part = 0, last = 0, length = 0.5;
+  root_ = before_ = x;
+  while (part < 1) {
+    const double next = std::min(1.0, part + length);
+    trial_ = root_;
+    if (part > 0) trial_ += Real((next - part) / (part - last)) * (root_ - before_);
+    const Found found = contract(equations, Real(next), trial_, count);
+    if (found == Found::yes) {
+      before_ = root_;
+      root_ = trial_;
+      last = part;
+      part = next;
+      length *= 2;
+    } else if (length > shortest) {
+      length /= 2;
+    } else if (found == Found::unsolved) {
+      return unsolved_system();
+    } else {
+      return Failure{
+          Outcome::Kind::solver_failure, -1, "step",
+          fmt::format("the equations of the step of {:.9g} have no solution that continues the motion beyond "
+                      "{:.3g} of it; take a smaller step",
+                      h, part)};
+    }
+  }
+  x = root_;
+  return {};
+}
+
+template <class Real>
+std::optional<Failure> ContinuedRoot<Real>::solve(StepEquations<Real>& equations, Vector<Real>& x, double h,
+                                                  Evaluations& count) {
+  trial_ = x;
+  if (contract(equations, Real(1), trial_, count) == Found::yes) {
+    x = trial_;
+    return {};
+  }
+  return follow(equations, x, h, count);
+}
+
+template class ContinuedRoot<double>;
+template class ContinuedRoot<Quad>;
+
+}  // namespace noether
