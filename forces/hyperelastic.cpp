@@ -39,10 +39,10 @@ void IsotropicMaterial::check() const {
   }
 }
 
-LameConstants IsotropicMaterial::constants() const {
-  if (!young_modulus || !poisson_ratio) return {lambda.value_or(0), mu.value_or(0)};
+IsotropicLaw IsotropicMaterial::law() const {
+  if (!young_modulus || !poisson_ratio) return {material, lambda.value_or(0), mu.value_or(0)};
   const double shear = *young_modulus / (2 * (1 + *poisson_ratio));
-  return {2 * shear * *poisson_ratio / (1 - 2 * *poisson_ratio), shear};
+  return {material, 2 * shear * *poisson_ratio / (1 - 2 * *poisson_ratio), shear};
 }
 
 Failure detail::inverted_element(Index element, const std::array<Index, 4>& particles, double part,

@@ -82,8 +82,9 @@ template <> struct EnumNames<ElasticLaw> {
       {{ElasticLaw::saint_venant_kirchhoff, "saint_venant_kirchhoff"}, {ElasticLaw::neo_hookean, "neo_hookean"}}};
 };
 
-/// The two constants of Lame [pressure].
-struct LameConstants {
+/// A law with its two constants, those of Lame [pressure].
+struct IsotropicLaw {
+  ElasticLaw kind;
   double lambda, mu;
 };
 
@@ -112,13 +113,13 @@ struct IsotropicMaterial {
   }
   /// @throws Error  unless it is given by two constants of one kind, those of a stable material
   void check() const;
-  /// @throws never; 0 for constants that are not given
-  LameConstants constants() const;
+  /// @throws never; constants that are not given are 0
+  IsotropicLaw law() const;
 
   template <class Real> Real energy(const Symmetric<Real>& c) const {
-    const auto [l, m] = constants();
+    const auto [kind, l, m] = law();
     const Real half_lambda(l / 2), half_mu(m / 2), one(1);
-    if (material == ElasticLaw::saint_venant_kirchhoff) {
+    if (kind == ElasticLaw::saint_venant_kirchhoff) {
       const Symmetric<Real> e = {c.xx - one, c.yy - one, c.zz - one, c.xy, c.xz, c.yz};  // 2 E
       const Real trace = e.xx + e.yy + e.zz, quarter(0.25);
       return quarter * (half_lambda * trace * trace + Real(m) * contract(e, e));
@@ -129,8 +130,8 @@ struct IsotropicMaterial {
     return half_mu * (trace - twice) + quarter * half_lambda * twice * twice;
   }
   template <class Real> Symmetric<Real> stress(const Symmetric<Real>& c) const {
-    const auto [l, m] = constants();
-    if (material == ElasticLaw::saint_venant_kirchhoff) return kirchhoff(c, Real(l / 2), Real(m));
+    const auto [kind, l, m] = law();
+    if (kind == ElasticLaw::saint_venant_kirchhoff) return kirchhoff(c, Real(l / 2), Real(m));
     using std::log;
     const Real j2 = determinant(c), one(1);
     const Symmetric<Real> inverse = (one / j2) * adjugate(c);

@@ -31,13 +31,17 @@ MeshElements<Number>::MeshElements(std::shared_ptr<const Topology> topology, Ind
   }
   corners_.assign(static_cast<std::size_t>(padded()) * 4, static_cast<std::int32_t>(0));
   shapes_.assign(static_cast<std::size_t>(padded()) * shape_width, Number(0));
-  for (Index k = 0; k < size(); ++k) add_shape(k);
+  for (Index k = 0; k < size(); ++k) add_shape(k, k);
+  for (Index k = size(); k < padded(); ++k) {
+    add_shape(k, 0);
+    shapes_[at(k, 9, shape_width)] = Number(0);
+  }
   find_places(n);
 }
 
-template <class Number> void MeshElements<Number>::add_shape(Index k) {
+template <class Number> void MeshElements<Number>::add_shape(Index k, Index of) {
   const Mesh& mesh = *origin_->mesh;
-  const auto& particles = mesh.tetrahedra[static_cast<std::size_t>(number(k))].particles;
+  const auto& particles = mesh.tetrahedra[static_cast<std::size_t>(number(of))].particles;
   std::array<Vec3<Number>, 4> x;
   for (std::size_t c = 0; c < 4; ++c) {
     corners_[at(k, static_cast<Index>(c), 4)] = static_cast<std::int32_t>(particles[c]);

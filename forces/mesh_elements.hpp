@@ -1,6 +1,7 @@
 #pragma once
 /// The tetrahedra of a mesh, ready to be evaluated: shapes at rest, and where each particle takes part.
 
+#include "engine/column.hpp"
 #include "engine/topology.hpp"
 #include "numbers/dual.hpp"
 #include "numbers/real.hpp"
@@ -41,7 +42,7 @@ template <class Number> class MeshElements {
 
   Index particles() const { return static_cast<Index>(first_.size()) - 1; }
   Index size() const { return static_cast<Index>(number_.size()); }
-  /// Elements with those that fill the last group: flat copies without volume of the first particle.
+  /// Elements with those that fill the last group: copies of the first one without volume.
   Index padded() const { return (size() + group - 1) / group * group; }
   /// Number of element k within the mesh, with those of other regions.
   Index number(Index k) const { return number_[static_cast<std::size_t>(k)]; }
@@ -61,13 +62,14 @@ template <class Number> class MeshElements {
   const std::uint32_t* places() const { return places_.data(); }
 
  private:
-  void add_shape(Index k);
+  /// Puts the shape of element `of` in the place of element k.
+  void add_shape(Index k, Index of);
   void find_places(Index n);
 
   std::shared_ptr<const Topology> origin_;
   std::string region_;
   std::vector<std::int32_t> corners_, number_;
-  std::vector<Number> shapes_;
+  AlignedVector<Number> shapes_;
   std::vector<std::uint32_t> first_, places_;
 };
 

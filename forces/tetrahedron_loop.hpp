@@ -5,6 +5,7 @@
 #include "forces/materials.hpp"
 #include "forces/mesh_elements.hpp"
 #include "forces/secant.hpp"
+#include "forces/tetrahedra_simd.hpp"
 #include "numbers/parallel.hpp"
 #include "numbers/select.hpp"
 #include "numbers/wide_sum.hpp"
@@ -15,7 +16,6 @@
 #include <limits>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 namespace noether::detail {
 
@@ -79,7 +79,7 @@ template <class Real, class M> class TetrahedronLoop {
       : material_(material), elements_(elements), s_(s), from_(from) {}
 
   void add_to(ForceSink<Real>& out) {
-    thread_local std::vector<Real> memory;
+    thread_local AlignedVector<Real> memory;
     const auto wanted = static_cast<std::size_t>(elements_.padded() * MeshElements<Number>::slot_width);
     if (memory.size() < wanted) memory.resize(wanted);
     slots_ = memory.data();  // this thread's, written by all
@@ -101,6 +101,9 @@ template <class Real, class M> class TetrahedronLoop {
 
   template <bool with_totals> MeshTotals<Real> evaluate(Index begin, Index end) {
     MeshTotals<Real> totals;
+    if constexpr (!with_totals && std::is_same_v<Real, double> && requires { material_.law(); }) {
+      if (from_ == nullptr && forces_in_lanes(begin, end)) return totals;
+    }
     for (Index k = begin; k < end; ++k) {
       if (from_ != nullptr) {
         add_secant(k);
@@ -109,6 +112,22 @@ template <class Real, class M> class TetrahedronLoop {
       }
     }
     return totals;
+  }
+
+  /// Elements of a block eight at a time. @return whether no element is inverted; else they are to be evaluated singly
+  bool forces_in_lanes(Index begin, Index end) const {
+    constexpr Index group = MeshElements<Number>::group;
+    static_assert(block_size % group == 0);
+    const IsotropicLaw law = material_.law();
+    const auto& x = s_.positions();
+    const TetrahedronGroups groups = {elements_.corners(),
+                                      elements_.shapes(),
+                                      {x.component(0), x.component(1), x.component(2)},
+                                      slots_,
+                                      law.lambda / 2,
+                                      law.mu,
+                                      law.kind == ElasticLaw::neo_hookean};
+    return tetrahedron_kernels().forces(groups, begin / group, (end + group - 1) / group);
   }
 
   /// The edges from the first corner of element k.
@@ -133,10 +152,10 @@ template <class Real, class M> class TetrahedronLoop {
     const auto edge = edges(elements_, k, [&](Index i) { return Vec3<Real>(s_.positions()[i]); });
     const Deformation<Real> f = deformation(k, edge);
     const Symmetric<Real> c = f.square();
-    const auto whole = f.determinant() > Real(0);
-    if (!all(whole)) note(k);
+    const auto inverted = f.determinant() <= Real(0);
+    if (any(inverted)) note(k);
     const Real volume(elements_.shape(k, 9));
-    const Real there = select(whole, volume, Real(std::numeric_limits<double>::quiet_NaN()));
+    const Real there = select(inverted, Real(std::numeric_limits<double>::quiet_NaN()), volume);
     const std::array<Vec3<Real>, 3> force = put(k, f.times(stress_of<Real>(material_, c)), there);
     if constexpr (with_totals) {
       totals.energy += there * material_.energy(c);
@@ -155,7 +174,7 @@ template <class Real, class M> class TetrahedronLoop {
       last[a] = edge[a] + way[a];
     }
     const Deformation<Real> f = deformation(k, middle), first = deformation(k, edge), end = deformation(k, last);
-    if (!(first.determinant() > Real(0))) note(k);
+    if (first.determinant() <= Real(0)) note(k);
     const Symmetric<Real> c0 = first.square(), c1 = end.square(), mean = half * (c0 + c1);
     const Symmetric<Real> change = change_of_square(f, deformation(k, way));
     Symmetric<Real> stress = stress_of<Real>(material_, mean);

@@ -126,8 +126,8 @@ TEST_CASE("hyperelastic forces are minus the gradients of their energies, those 
 
 TEST_CASE("constants of Lame and of engineers are the same material", "[hyperelastic]") {
   const IsotropicMaterial steel{.young_modulus = 210, .poisson_ratio = 0.3};
-  CHECK(std::abs(steel.constants().mu - 210 / 2.6) < 1e-13);
-  CHECK(std::abs(steel.constants().lambda - 210 * 0.3 / (1.3 * 0.4)) < 1e-13);
+  CHECK(std::abs(steel.law().mu - 210 / 2.6) < 1e-13);
+  CHECK(std::abs(steel.law().lambda - 210 * 0.3 / (1.3 * 0.4)) < 1e-13);
 }
 
 TEST_CASE("masses of a block are those of its volume, and a surface has its area", "[hyperelastic]") {
@@ -157,6 +157,21 @@ TEST_CASE("an element that is turned inside out is told by its number, flat ones
   flat.mesh = mesh;
   s.set_topology(std::make_shared<const Topology>(flat));
   CHECK_THROWS_WITH(check_force(soft, s), Catch::Contains("element 0 of the mesh is flat"));
+}
+
+TEST_CASE("forces in lanes have the bits of elements one by one, with and without energy", "[hyperelastic]") {
+  ParticleSystem<double> s =
+      Block{.cells = {3, 2, 5}, .size = {1, 1, 1}, .density = 1, .stretch = {1.1, 0.95, 1.02}, .bend = 0.4}.build();
+  const Index n = s.size();
+  for (Index i = 0; i < n; ++i) s.positions().component(1)[i] += 0.01 * std::sin(static_cast<double>(7 * i));
+  for (const HyperelasticForce& force : {soft, neo}) {
+    VectorColumn<double> plain(n), with_energy(n);
+    ForceSink<double> one(plain, s, {}), other(with_energy, s, {.energy = true});
+    force.add_to(one, s);
+    force.add_to(other, s);
+    CHECK_FALSE(one.failure());
+    CHECK(plain.all() == with_energy.all());
+  }
 }
 
 // ---- the tumbling cube of shared figures ---------------------------------------------------------------------------
