@@ -10,6 +10,7 @@
 #include "numbers/select.hpp"
 #include "numbers/wide_sum.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -97,6 +98,7 @@ template <class Real, class M> class TetrahedronLoop {
   }
 
  private:
+  static constexpr std::uint32_t places_ahead = 96;  ///< those of some four particles
   static constexpr Index none = std::numeric_limits<Index>::max();
 
   template <bool with_totals> MeshTotals<Real> evaluate(Index begin, Index end) {
@@ -209,11 +211,15 @@ template <class Real, class M> class TetrahedronLoop {
   void gather(ForceSink<Real>& out, Index begin, Index end) const {
     const std::uint32_t *const first = elements_.first(), *const places = elements_.places();
     const Index stride = MeshElements<Number>::group;
+    const std::uint32_t last = first[elements_.particles()] - 1;
     for (Index i = begin; i < end; ++i) {
       if (first[i] == first[i + 1]) continue;
       Vec3<Real> sum = Vec3<Real>::Zero();
       for (std::uint32_t p = first[i]; p < first[i + 1]; ++p) {
         const Real* const at = slots_ + places[p];
+        // Slots are written in the order of elements and read in that of particles: nothing foresees where.
+        const Real* const later = slots_ + places[std::min(p + places_ahead, last)];
+        for (int c = 0; c < 3; ++c) __builtin_prefetch(later + c * stride);
         for (int c = 0; c < 3; ++c) sum[c] += at[c * stride];
       }
       const Real m = s_.masses()[i];
