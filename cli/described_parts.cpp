@@ -16,7 +16,10 @@ std::vector<FieldInfo> particle_keys(std::size_t particles) {
     return FieldInfo{std::string(name), "1", std::string(help), "list", "", std::string(example), {}};
   };
   if (particles == 0) return {key("bodies", of_names, "names of the particles that it ties together")};
-  if (particles == 1) return {key("bodies", of_names, "names of the particles, or \"all\"")};
+  if (particles == 1) {
+    return {key("bodies", of_names, "names of the particles, or \"all\""),
+            key("surface", "", "instead of bodies: the name of a surface of a mesh")};
+  }
   if (particles == 2) {
     return {
         key("pairs", of_pairs, "pairs of names, or \"bonds\" for every bond of a structure"),

@@ -249,9 +249,9 @@ void add_verify_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
 
 void add_convert_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
-  CLI::App* command = file_command(app, "convert", "rewrite a trajectory as extended XYZ or CSV, or a frame as bodies",
-                                   "run.h5", given);
-  command->add_option("out", given->out, "FILE.xyz or FILE.csv; of bodies FILE.h5 or FILE.csv")
+  CLI::App* command = file_command(
+      app, "convert", "rewrite a trajectory as extended XYZ, CSV or VTK, or a frame as bodies", "run.h5", given);
+  command->add_option("out", given->out, "FILE.xyz, FILE.csv or FILE.vtu; of bodies FILE.h5 or FILE.csv")
       ->required()
       ->type_name("OUT");
   command->add_flag("--unwrapped", given->unwrapped,

@@ -192,6 +192,7 @@ struct ForceClaims {
   std::optional<double> G = {};         ///< of `kepler` [length^3/mass/time^2]; default: the unit system's own
   double softening = 0;                 ///< of `kepler` [length]
   bool bonded = false;                  ///< it acts on the bonds, angles and dihedrals of the structure
+  bool meshed = false;                  ///< it acts on the tetrahedra of the structure
   bool pair_coefficients = false;       ///< it takes the coefficients that a structure has for pairs of types
   bool on_bodies = false;               ///< it acts on rigid bodies themselves and gives their torques, not on sites
   std::optional<bool> charges = {};     ///< it looks at charges; empty: it does not say

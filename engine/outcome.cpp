@@ -22,6 +22,8 @@ std::string_view name(Outcome::Kind kind) noexcept {
       return "overlap";
     case Outcome::Kind::overstretch:
       return "overstretch";
+    case Outcome::Kind::inverted_element:
+      return "inverted_element";
   }
   return "completed";
 }

@@ -31,7 +31,8 @@ struct [[nodiscard]] Outcome {
     solver_failure,      ///< an implicit step did not converge
     step_underflow,      ///< the error controller asked for a step below the resolution of time
     overlap,             ///< two particles came closer than the potential is defined
-    overstretch          ///< a bond is longer than its potential allows
+    overstretch,         ///< a bond is longer than its potential allows
+    inverted_element     ///< a tetrahedron of a body that deforms has been turned inside out
   };
 
   Kind kind = Kind::completed;

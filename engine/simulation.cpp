@@ -27,7 +27,8 @@ constexpr double longest_wait = 1;
 /// What a force has named says more than what came of it.
 bool tells_more(const Failure* failure, const std::optional<Outcome>& fault) {
   using Kind = Outcome::Kind;
-  return failure != nullptr && (!fault || failure->kind == Kind::overlap || failure->kind == Kind::overstretch);
+  return failure != nullptr && (!fault || failure->kind == Kind::overlap || failure->kind == Kind::overstretch ||
+                                failure->kind == Kind::inverted_element);
 }
 
 double seconds_since(WallClock::time_point start) {

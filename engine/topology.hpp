@@ -7,11 +7,14 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace noether {
+
+struct Mesh;
 
 /// One bonded term: its particles and the index of its kind.
 template <std::size_t n> struct BondedTerm {
@@ -61,6 +64,8 @@ struct Topology {
   /// Groups of particles that constraints hold as rigid bodies, a bond among them as a group of two: a bonded term
   /// within one of them is constant, and the force `bonded` leaves it out.
   std::vector<std::vector<Index>> rigid;
+  /// The bodies that deform, divided into tetrahedra (engine/mesh.hpp); null where there are none. Copies share it.
+  std::shared_ptr<const Mesh> mesh;
 
   std::vector<PairKind> pair_kinds;  ///< by type of the particle; empty where nothing was said of Lennard-Jones
   Mixing mixing = Mixing::lorentz_berthelot;

@@ -34,6 +34,7 @@ inline void merge(ForceClaims& all, const ForceClaims& one) {
     all.softening = std::max(all.softening, one.softening);
   }
   all.bonded = all.bonded || one.bonded;
+  all.meshed = all.meshed || one.meshed;
   all.on_bodies = all.on_bodies || one.on_bodies;
   all.pair_coefficients = all.pair_coefficients || one.pair_coefficients;
   all.charges = one_says_so(all.charges, one.charges);

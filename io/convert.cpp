@@ -7,6 +7,7 @@
 #include "io/structure_parts.hpp"
 #include "io/trajectory.hpp"
 #include "io/trajectory_reader.hpp"
+#include "io/vtu.hpp"
 #include "numbers/error.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
@@ -248,13 +249,13 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
   const std::string extension = out.extension().string();
   if (extension == ".h5") {
     throw Error(fmt::format("cannot convert to '{}': give --bodies to write one frame for a new scene, or a name that "
-                            "ends in .xyz or .csv for all frames",
+                            "ends in .xyz, .csv or .vtu for all frames",
                             out.string()),
                 {.value = extension});
   }
-  if (extension != ".xyz" && extension != ".csv") {
+  if (extension != ".xyz" && extension != ".csv" && extension != ".vtu") {
     throw Error(fmt::format("cannot convert to '{}': unknown extension '{}'{}", out.string(), extension,
-                            did_you_mean(extension, {".xyz", ".csv"})),
+                            did_you_mean(extension, {".xyz", ".csv", ".vtu"})),
                 {.value = extension});
   }
   try_in_child(file, [&] {
@@ -265,7 +266,7 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
   const TrajectoryReader reader(file);
   if (reader.frames() == 0) throw FileError("there are no frames to convert", {.file = file.string()});
   const bool of_system = !reader.shared().variable_names.empty();
-  if (of_system && extension == ".xyz") {
+  if (of_system && extension != ".csv") {
     throw Error(fmt::format("cannot convert to '{}': a first-order system has no particles; give a name that ends in "
                             ".csv",
                             out.string()),
@@ -274,6 +275,10 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
   if (options.unwrapped && reader.frame(0).images.empty()) {
     throw Error(fmt::format(
         "cannot unwrap the positions of '{}': its frames have no periodic box; leave out --unwrapped", file.string()));
+  }
+  if (extension == ".vtu") {
+    if (options.unwrapped) throw Error("a .vtu shows particles in their box; leave out --unwrapped");
+    return write_vtu(reader, out);
   }
   const Write write = of_system ? write_system : extension == ".csv" ? write_csv : write_xyz;
   std::optional<FrameSites> sites;  // pictures show atoms; tables keep orientations and spins

@@ -28,6 +28,7 @@ StructureFormat format_of(const std::filesystem::path& file) {
   }
   if (extension == ".xyz" || extension == ".extxyz") return StructureFormat::extended_xyz;
   if (extension == ".gro") return StructureFormat::gro;
+  if (extension == ".msh") return StructureFormat::gmsh;
   if (file.filename().string().starts_with("data.")) return StructureFormat::lammps_data;
   if (extension == ".h5" || extension == ".hdf5") {
     throw Error(fmt::format("'{}' is not a structure; to start from the particles of a run give bodies = \"{}\"",
@@ -35,7 +36,7 @@ StructureFormat format_of(const std::filesystem::path& file) {
                 {.key = "structure", .value = file.string()});
   }
   throw Error(fmt::format("'{}' has no supported format; a structure is a .data or .lmp file or data.NAME (LAMMPS), "
-                          ".xyz or .extxyz, or .gro",
+                          ".xyz or .extxyz, .gro, or .msh (Gmsh)",
                           file.filename().string()),
               {.key = "structure", .value = file.string()});
 }
@@ -43,6 +44,7 @@ StructureFormat format_of(const std::filesystem::path& file) {
 /// What stands in the text instead of a structure, told of bytes that are no text.
 constexpr std::string_view expected_of(StructureFormat format) {
   if (format == StructureFormat::lammps_data) return "a LAMMPS data file";
+  if (format == StructureFormat::gmsh) return "a mesh of Gmsh in ASCII";
   return format == StructureFormat::gro ? "a .gro file" : "extended XYZ";
 }
 
@@ -198,8 +200,14 @@ ParticleSystem<double> read_structure(const std::filesystem::path& file, const S
     throw Error(fmt::format("atom_style = \"{}\" is for LAMMPS data files; leave it out", options.atom_style),
                 {.key = "atom_style", .value = options.atom_style});
   }
-  if (options.frame && format == StructureFormat::lammps_data) {
-    throw Error("a LAMMPS data file is one frame; leave frame out", {.key = "frame"});
+  if (options.frame && (format == StructureFormat::lammps_data || format == StructureFormat::gmsh)) {
+    throw Error(fmt::format("{} is one frame; leave frame out",
+                            format == StructureFormat::gmsh ? "a mesh" : "a LAMMPS data file"),
+                {.key = "frame"});
+  }
+  if (!options.densities.empty() && format != StructureFormat::gmsh) {
+    throw Error("density is for meshes, .msh; the masses of this structure are those of its particles; leave it out",
+                {.key = "density"});
   }
   if (!options.coefficients.empty() && format != StructureFormat::lammps_data) {
     throw Error("coefficients are for LAMMPS data files; leave them out", {.key = "coefficients"});
@@ -212,6 +220,7 @@ ParticleSystem<double> read_structure(const std::filesystem::path& file, const S
   check_special(special);
   Structure structure = format == StructureFormat::lammps_data ? read_lammps_data(text, script, units, told)
                         : format == StructureFormat::gro       ? read_gro(text, units, told)
+                        : format == StructureFormat::gmsh      ? read_gmsh(text, told)
                                                                : read_extended_xyz(text, units, told);
   if (structure.pair_style_assumed) {
     note(options,

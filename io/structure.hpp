@@ -1,5 +1,6 @@
 #pragma once
-/// Structures: particles with their box, types and bonds, from LAMMPS data files, extended XYZ and GROMACS files.
+/// Structures: particles with their box, types and bonds, from LAMMPS data files, extended XYZ, GROMACS files and
+/// meshes of Gmsh.
 
 #include "engine/particle_system.hpp"
 #include "io/structure_options.hpp"
@@ -24,6 +25,9 @@ namespace noether::io {
 /// `initial_charges` in e, `mass` or `masses` in u; other properties are told in `notes`. A `Temperature` of the
 /// comment is compared with the velocities. Types are the species; an element that is given no mass has its standard
 /// atomic weight.
+///
+/// `.msh`: a mesh of Gmsh, 2.2 or 4.1 in ASCII: nodes of tetrahedra of first order, with masses by `densities`;
+/// physical volumes are its regions, physical surfaces its surfaces. Lengths are in `file_units`.
 ///
 /// `.gro`: one frame; types are atom names, molecules are residues; masses come from `types`.
 /// @throws FileError if it cannot be read or is no text; SceneError for what is wrong in it, with file and line; Error

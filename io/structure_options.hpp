@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,8 +19,8 @@ namespace noether::io {
 struct StructureOptions {
   const UnitSystem* units = &unit_system("molecular");  ///< the unit system of the particles
   /// "lj" (in the reduced system), "real" or "metal" (in the molecular one): the units of a LAMMPS data file that does
-  /// not say them in its first line, as LAMMPS itself does, and of the velocities of extended XYZ. Empty: what the file
-  /// says.
+  /// not say them in its first line, as LAMMPS itself does, and of the velocities of extended XYZ; of a mesh the
+  /// unit of length. Empty: what the file says, and the unit of the system for a mesh.
   std::string file_units = {};
   std::string atom_style = {};  ///< of a LAMMPS data file without it: atomic, charge, bond, angle, molecular or full
   /// Factors of the pair forces of particles one, two and three bonds apart; empty: those of `special_bonds` in
@@ -33,6 +34,8 @@ struct StructureOptions {
   std::optional<std::int64_t> frame = {};  ///< of XYZ and .gro, from 0; -1 is the last. Needed where there are several
   /// Input scripts of LAMMPS with the coefficients that a data file leaves to them, in their order.
   std::vector<std::filesystem::path> coefficients = {};
+  /// Of the regions of a mesh by their names, that of all others by "" [mass/length^3].
+  std::map<std::string, double> densities = {};
   /// Where it is given, what the file holds and nobody reads is told here, a line each.
   std::vector<std::string>* notes = nullptr;
 };

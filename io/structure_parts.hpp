@@ -16,7 +16,7 @@
 
 namespace noether::io {
 
-enum class StructureFormat : std::uint8_t { lammps_data, extended_xyz, gro };
+enum class StructureFormat : std::uint8_t { lammps_data, extended_xyz, gro, gmsh };
 
 /// Factors that take numbers of a file to the units of the particles: number times factor.
 struct FileUnits {
@@ -129,5 +129,6 @@ Structure read_lammps_data(const TextFile& text, const LammpsScript& script, con
                            const StructureOptions& options);
 Structure read_extended_xyz(const TextFile& text, const FileUnits& units, const StructureOptions& options);
 Structure read_gro(const TextFile& text, const FileUnits& units, const StructureOptions& options);
+Structure read_gmsh(const TextFile& text, const StructureOptions& options);
 
 }  // namespace noether::io

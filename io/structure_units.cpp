@@ -117,7 +117,7 @@ double twice_kinetic_energy(const ParticleSystem<double>& s) {
 }  // namespace
 
 StructureOptions with_units_of_file(const TextFile& text, StructureFormat format, StructureOptions options) {
-  if (format == StructureFormat::gro || text.lines().empty()) return options;
+  if (format == StructureFormat::gro || format == StructureFormat::gmsh || text.lines().empty()) return options;
   const bool lammps = format == StructureFormat::lammps_data;
   const std::string units = lammps ? units_of_lammps(text) : units_of_xyz(text);
   const std::size_t line = lammps ? 1 : 2;
@@ -165,6 +165,7 @@ void check_stated_temperature(const TextFile& text, const Structure& structure, 
 }
 
 FileUnits file_units_of(StructureFormat format, const StructureOptions& options) {
+  if (format == StructureFormat::gmsh) return {};  // it has lengths alone, and reads their unit itself
   UnitsCheck(format, options).check();
   if (options.units->is_reduced()) return {};
   constexpr double angstrom = units::molecular::angstrom, femtosecond = units::molecular::fs;

@@ -1,5 +1,6 @@
 #include "io/trajectory_topology.hpp"
 
+#include "engine/mesh.hpp"
 #include "io/trajectory_layout.hpp"
 #include "numbers/error.hpp"
 
@@ -29,9 +30,7 @@ class TopologyWriter {
  public:
   TopologyWriter(const Hdf5File& file, const std::vector<std::int64_t>& ids) : file_(file), ids_(ids) {}
 
-  template <std::size_t n>
-  void write_terms(const std::string& name, const std::vector<BondedTerm<n>>& terms,
-                   const std::vector<TermKind>& kinds) const {
+  template <std::size_t n> void write_elements(const std::string& name, const std::vector<BondedTerm<n>>& terms) const {
     std::vector<std::int64_t> tuples, kind_of_term;
     for (const BondedTerm<n>& term : terms) {
       for (const Index i : term.particles) tuples.push_back(id(i));
@@ -43,6 +42,11 @@ class TopologyWriter {
       file_.set_reference(path, "particles_group", particles_path);
     }
     integers(name + "_kind", kind_of_term, 1);
+  }
+  template <std::size_t n>
+  void write_terms(const std::string& name, const std::vector<BondedTerm<n>>& terms,
+                   const std::vector<TermKind>& kinds) const {
+    write_elements(name, terms);
     std::vector<std::string> potentials;
     std::vector<std::int64_t> counts;
     std::vector<double> parameters;
@@ -80,6 +84,29 @@ class TopologyWriter {
     if (topology.stated_cutoff != 0) reals("stated_cutoff", {topology.stated_cutoff}, 1);
   }
 
+  /// Elements and surfaces as connectivity, and where each particle is in the bodies at rest; their edges for VMD.
+  void write_mesh(const Mesh& mesh, const std::vector<Index>& order) const {
+    write_elements("tetrahedra", mesh.tetrahedra);
+    write_elements("triangles", mesh.triangles);
+    texts("region_name", mesh.regions);
+    texts("surface_name", mesh.surfaces);
+    std::vector<double> rest;
+    std::vector<std::int64_t> row(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const Vec3<double>& place = mesh.rest[static_cast<std::size_t>(order[k])];
+      rest.insert(rest.end(), {place[0], place[1], place[2]});
+      row[static_cast<std::size_t>(order[k])] = static_cast<std::int64_t>(k) + 1;
+    }
+    reals("rest", rest, 3);
+    std::vector<std::int64_t> from, to;
+    for (const auto& [i, j] : mesh.edges()) {
+      from.push_back(row[static_cast<std::size_t>(i)]);
+      to.push_back(row[static_cast<std::size_t>(j)]);
+    }
+    file_.write("/parameters/vmd_structure/bond_from", from, {static_cast<Index>(from.size())});
+    file_.write("/parameters/vmd_structure/bond_to", to, {static_cast<Index>(to.size())});
+  }
+
   void integers(const std::string& name, const std::vector<std::int64_t>& values, Index width) const {
     if (!values.empty()) file_.write(topology_path + "/" + name, values, shape(values.size(), width));
   }
@@ -115,6 +142,11 @@ class TopologyReader {
   template <std::size_t n>
   void read_terms(const std::string& name, std::vector<BondedTerm<n>>& terms, std::vector<TermKind>& kinds) const {
     kinds = read_kinds(name);
+    read_elements(name, kinds.size(), terms);
+  }
+  /// @param kinds  that they may be of; 0: one without a name
+  template <std::size_t n>
+  void read_elements(const std::string& name, std::size_t kinds, std::vector<BondedTerm<n>>& terms) const {
     const std::string path = connectivity_path + "/" + name;
     if (!file_.has(path)) return;
     const std::vector<std::int64_t> tuples = rows_of(path, n), kind_of_term = integers(name + "_kind");
@@ -123,9 +155,31 @@ class TopologyReader {
     for (std::size_t k = 0; k < kind_of_term.size(); ++k) {
       BondedTerm<n> term;
       for (std::size_t j = 0; j < n; ++j) term.particles[j] = index(tuples[n * k + j]);
-      term.type = static_cast<int>(below(kind_of_term[k], std::max<std::size_t>(kinds.size(), 1), name + "_kind"));
+      term.type = static_cast<int>(below(kind_of_term[k], std::max<std::size_t>(kinds, 1), name + "_kind"));
       terms.push_back(term);
     }
+  }
+
+  /// @param order  the row of each particle
+  std::shared_ptr<const Mesh> read_mesh(const std::vector<Index>& order) const {
+    if (!file_.has(connectivity_path + "/tetrahedra")) return nullptr;
+    auto mesh = std::make_shared<Mesh>();
+    mesh->regions = texts("region_name");
+    mesh->surfaces = texts("surface_name");
+    read_elements("tetrahedra", mesh->regions.size(), mesh->tetrahedra);
+    read_elements("triangles", mesh->surfaces.size(), mesh->triangles);
+    const std::vector<double> rest = reals("rest");
+    if (rest.size() != 3 * order.size()) refuse_topology(file_, "ids and places at rest differ in number");
+    for (const Index row : order) {
+      const auto at = 3 * static_cast<std::size_t>(row);
+      mesh->rest.emplace_back(rest[at], rest[at + 1], rest[at + 2]);
+    }
+    try {
+      mesh->check(static_cast<Index>(order.size()));
+    } catch (const Error& error) {
+      refuse_topology(file_, error.message());
+    }
+    return mesh;
   }
 
   void read_pairs(Topology& topology) const {
@@ -253,6 +307,7 @@ void write_topology(const Hdf5File& file, const ParticleSystem<double>& state, c
   writer.write_terms("angles", topology->angles, topology->angle_kinds);
   writer.write_terms("dihedrals", topology->dihedrals, topology->dihedral_kinds);
   writer.write_terms("impropers", topology->impropers, topology->improper_kinds);
+  if (topology->mesh != nullptr) writer.write_mesh(*topology->mesh, order);
   writer.write_pairs(*topology);
 }
 
@@ -300,6 +355,7 @@ std::shared_ptr<const Topology> read_topology(const Hdf5File& file, const std::v
   reader.read_terms("angles", topology.angles, topology.angle_kinds);
   reader.read_terms("dihedrals", topology.dihedrals, topology.dihedral_kinds);
   reader.read_terms("impropers", topology.impropers, topology.improper_kinds);
+  topology.mesh = reader.read_mesh(order);
   reader.read_pairs(topology);
   return std::make_shared<const Topology>(std::move(topology));
 }

@@ -5,11 +5,14 @@
 /// |---|---|---|
 /// | /particles/system/species | the type of each particle, from 1: "1", "2" of LAMMPS are 1, 2 | (n) |
 /// | /connectivity/bonds, angles, dihedrals, impropers | ids of the particles of each term | (m, 2), (m, 3), (m, 4) |
-/// | /noether/topology/type_name | names of the types: species k is called by the text k - 1 | (types) |
-/// | /noether/topology/molecule | the molecule of each particle | (n) |
-/// | /noether/topology/bonds_kind, ... | which kind each term is of, from 0 | (m) |
-/// | /noether/topology/bonds_potential, ... | the potential of each kind | (kinds) |
-/// | /noether/topology/bonds_parameter_count, ..._parameters | how many parameters it has, and all of them in a row | |
+/// | /connectivity/tetrahedra, triangles | ids of the corners of elements, and of surfaces of a mesh | (m, 4), (m, 3) |
+/// | /noether/topology/region_name, surface_name | names of the kinds of these | (kinds) |
+/// | /noether/topology/rest | where each particle is in the bodies at rest | (n, 3) |
+/// | /parameters/vmd_structure/bond_from, bond_to | rows of the ends of each edge of a mesh, from 1, as VMD draws them
+/// | (e)| | /noether/topology/type_name | names of the types: species k is called by the text k - 1 | (types) | |
+/// /noether/topology/molecule | the molecule of each particle | (n) | | /noether/topology/bonds_kind, ... | which kind
+/// each term is of, from 0 | (m) | | /noether/topology/bonds_potential, ... | the potential of each kind | (kinds) | |
+/// /noether/topology/bonds_parameter_count, ..._parameters | how many parameters it has, and all of them in a row | |
 /// | /noether/topology/pair_kinds | epsilon and sigma of each type | (types, 2) |
 /// | /noether/topology/pair_types, pair_parameters | pairs of types, from 0, that are not mixed | (p, 2), (p, 2) |
 /// | /noether/topology/mixing, stated_cutoff | how the others are mixed; the cutoff that a file named | |

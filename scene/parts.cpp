@@ -11,12 +11,14 @@
 #include "forces/gravity.hpp"
 #include "forces/gravity_of_bodies.hpp"
 #include "forces/henon_heiles.hpp"
+#include "forces/hyperelastic.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/pair_potentials.hpp"
 #include "forces/post_newtonian.hpp"
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
+#include "forces/traction.hpp"
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
 #include "integrators/damped.hpp"
@@ -145,6 +147,8 @@ Parts standard_parts() {
   parts.add_force<HarmonicBond>();
   parts.add_force<Tether>();
   parts.add_force<Bonded>();
+  parts.add_force<HyperelasticForce>();
+  parts.add_force<Traction>();
   parts.add_force<LinearDrag>();
   parts.add_force<Tides>();
   parts.add_constraint<Distance>();

@@ -1,6 +1,7 @@
 #include "scene/read_builder.hpp"
 
 #include "engine/make_rigid.hpp"
+#include "scene/block.hpp"
 #include "scene/builders.hpp"
 #include "scene/foreign_names.hpp"
 #include "scene/water_box.hpp"
@@ -28,7 +29,8 @@ template <class Builder> BuilderKind builder_kind() {
 
 const std::vector<BuilderKind>& builders() {
   static const std::vector<BuilderKind> all = {builder_kind<Lattice>(), builder_kind<Liquid>(),
-                                               builder_kind<PolymerChains>(), builder_kind<WaterBox>()};
+                                               builder_kind<PolymerChains>(), builder_kind<WaterBox>(),
+                                               builder_kind<Block>()};
   return all;
 }
 

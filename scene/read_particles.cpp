@@ -275,7 +275,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
         {"bodies",           "bodies_sha256", "epoch", "elements",    "body", "rigid_body",   "structure",
          "structure_sha256", "type",          "pair",  "mixing",      "box",  "special",      "exclusions",
          "file_units",       "atom_style",    "frame", "temperature", "seed", "coefficients", "coefficients_sha256",
-         "molecules"});
+         "molecules",        "density"});
   }
   check_sources(reader);
   if (is_built(reader)) {

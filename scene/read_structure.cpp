@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <string_view>
 
 namespace noether {
@@ -61,13 +62,33 @@ std::vector<std::filesystem::path> read_coefficients(TableReader& reader, const 
   return files;
 }
 
+/// `density = "7.8 g/cm^3"` of a mesh, or a table of those of its regions.
+std::map<std::string, double> read_densities(TableReader& reader, SceneValue& effective) {
+  const SceneValue* value = reader.find("density");
+  if (value == nullptr) return {};
+  effective.put("density", *value);
+  const auto checked = [&](const SceneValue& one) {
+    const double density = reader.number(one, "density", "density");
+    if (!(density > 0)) {
+      reader.fail(&one, "density",
+                  fmt::format("density = {} is not above 0; a density above 0 is expected", to_text(one)));
+    }
+    return density;
+  };
+  const auto* regions = value->get<SceneValue::Table>();
+  if (regions == nullptr) return {{"", checked(*value)}};
+  std::map<std::string, double> densities;
+  for (const auto& [region, density] : *regions) densities[region] = checked(density);
+  return densities;
+}
+
 }  // namespace
 
 ParticleSystem<double> read_structure_particles(TableReader& reader, const std::filesystem::path& folder,
                                                 SceneValue& effective, std::vector<std::string>& notes) {
   reader.expect_only({"structure", "structure_sha256", "file_units", "special", "exclusions", "atom_style", "mixing",
                       "box", "type", "pair", "temperature", "seed", "frame", "coefficients", "coefficients_sha256",
-                      "molecules"});
+                      "molecules", "density"});
   io::StructureOptions options;
   options.units = reader.context().units;
   options.notes = &notes;
@@ -85,6 +106,7 @@ ParticleSystem<double> read_structure_particles(TableReader& reader, const std::
   SceneValue keys = SceneValue::table();
   options.file_units = kept_text(reader, "file_units", keys);
   options.atom_style = kept_text(reader, "atom_style", keys);
+  options.densities = read_densities(reader, keys);
   options.coefficients = read_coefficients(reader, folder, keys);
   // What the scene does not say, the coefficients may.
   if (reader.has("special") || options.coefficients.empty()) options.special = read_special(reader, keys);

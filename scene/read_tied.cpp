@@ -1,5 +1,6 @@
 #include "scene/read_tied.hpp"
 
+#include "engine/mesh.hpp"
 #include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
@@ -28,6 +29,7 @@ TiedReader::TiedReader(TableReader& reader, std::size_t particles, const Particl
     : reader_(reader), particles_(particles), key_(key_of(particles)), s_(s) {
   for (Index i = 0; i < s.size(); ++i) index_.emplace(s.name(i), i);
   reader.find(key_);
+  if (particles == 1) reader.find("surface");
   if (particles == 2) reader.find("chain");
 }
 
@@ -41,6 +43,15 @@ TiedParticles TiedReader::read(SceneValue& effective) {
   if (chain != nullptr) {
     effective.put("chain", *chain);
     return links(*chain);
+  }
+  const SceneValue* surface = particles_ == 1 ? reader_.find("surface") : nullptr;
+  if (value != nullptr && surface != nullptr) {
+    reader_.fail(surface, "surface",
+                 fmt::format("bodies and surface are both given in {}; give only one of them", reader_.what()));
+  }
+  if (surface != nullptr) {
+    effective.put("surface", *surface);
+    return of_surface(*surface);
   }
   if (value == nullptr) {
     reader_.fail(nullptr, key_,
@@ -117,6 +128,25 @@ TiedParticles TiedReader::of_structure(const SceneValue& value) const {
         &value, key_,
         fmt::format("{} = \"{}\" ties no particles: there are no {} from a structure or a builder; name the particles",
                     key_, terms, terms));
+  }
+  return tied;
+}
+
+/// The particles of a surface of the mesh.
+TiedParticles TiedReader::of_surface(const SceneValue& name) const {
+  const std::string* text = name.get<std::string>();
+  if (text == nullptr) reader_.wrong_kind(name, "surface", "the name of a surface of the mesh");
+  const Mesh* mesh = s_.topology() != nullptr ? s_.topology()->mesh.get() : nullptr;
+  if (mesh == nullptr) {
+    reader_.fail(
+        &name, "surface",
+        fmt::format("surface = \"{}\" ties no particles: they have no mesh; name the particles as bodies", *text));
+  }
+  TiedParticles tied;
+  try {
+    for (const Index i : mesh->particles_of(mesh->surface(*text))) tied.push_back({i});
+  } catch (const Error& error) {
+    reader_.fail(&name, "surface", error.message());
   }
   return tied;
 }

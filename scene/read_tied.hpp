@@ -1,5 +1,5 @@
 #pragma once
-/// Which particles a table of a scene ties: `bodies`, `pairs`, `triples` or `groups` of names.
+/// Which particles a table of a scene ties: `bodies`, `pairs`, `triples` or `groups` of names, a `surface` of a mesh.
 
 #include "scene/parts.hpp"
 
@@ -10,10 +10,11 @@
 namespace noether {
 
 /// Reads which particles a table ties: names, tuples of names, a `chain` of pairs, all "bonds" or "angles" of a
-/// structure.
+/// structure, one `surface` of a mesh.
 class TiedReader {
  public:
-  /// @param particles  of each tuple: 1 `bodies`, 2 `pairs` (or `chain`), 3 `triples`; 0 any number, in one tuple
+  /// @param particles  of each tuple: 1 `bodies` (or `surface`), 2 `pairs` (or `chain`), 3 `triples`; 0 any number, in
+  /// one tuple
   TiedReader(TableReader& reader, std::size_t particles, const ParticleSystem<double>& s);
 
   /// The particles by their places; what the scene says of them is put into `effective`.
@@ -26,6 +27,7 @@ class TiedReader {
   Index particle(const SceneValue& at, const SceneValue& name) const;
   TiedParticles all() const;
   TiedParticles of_structure(const SceneValue& value) const;
+  TiedParticles of_surface(const SceneValue& name) const;
   TiedParticles links(const SceneValue& chain) const;
 
   TableReader& reader_;

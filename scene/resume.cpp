@@ -120,7 +120,7 @@ Ending load_ending(const io::Checkpoint& checkpoint) {
   outcome.time = checkpoint.time;
   std::int64_t kind = 0;
   load_value(state, "kind", kind);
-  outcome.kind = detail::enumerator(kind, Outcome::Kind::overstretch);
+  outcome.kind = detail::enumerator(kind, Outcome::Kind::inverted_element);
   load_value(state, "message", outcome.message);
   load_value(state, "quantity", outcome.quantity);
   bool has_particle = false;

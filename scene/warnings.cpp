@@ -190,7 +190,7 @@ std::string unmoved_tracers(const Scene& scene) {
   const ParticleSystem<double>& s = scene.particles;
   const auto acts_without_mass = [](const SceneForce& force) {
     const ForceClaims claims = force.force.claims();
-    return claims.kepler || !(claims.range > 0 || claims.bonded);
+    return claims.kepler || !(claims.range > 0 || claims.bonded || claims.meshed);
   };
   const std::vector<SceneForce> terms = scene.hamiltonian.terms();
   if (terms.empty() || std::any_of(terms.begin(), terms.end(), acts_without_mass)) return "";
@@ -262,6 +262,10 @@ std::vector<std::string> warnings_of(const Scene& scene) {
       add(fmt::format("the structure has {} that nothing acts on: there is no force 'bonded'",
                       counted(static_cast<std::int64_t>(terms), "bonded term")));
     }
+  }
+  if (const Topology* t = scene.particles.topology();
+      t != nullptr && t->mesh != nullptr && !some(scene, &ForceClaims::meshed)) {
+    add("the structure has tetrahedra that nothing acts on: there is no force 'hyperelastic'");
   }
   if (!forces.empty() && scene.hamiltonian.splitting.only_forces && none_does(scene, &ForceClaims::charges) &&
       has_charges(scene.particles)) {

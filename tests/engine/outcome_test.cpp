@@ -34,6 +34,7 @@ constexpr std::array promises = {
     Promise{Outcome::Kind::step_underflow, "step_underflow", 1},
     Promise{Outcome::Kind::overlap, "overlap", 1},
     Promise{Outcome::Kind::overstretch, "overstretch", 1},
+    Promise{Outcome::Kind::inverted_element, "inverted_element", 1},
 };
 
 TEST_CASE("every kind of outcome has its name and its exit code", "[outcome]") {

@@ -6,11 +6,13 @@
 #include "forces/gr_potential.hpp"
 #include "forces/gravity.hpp"
 #include "forces/henon_heiles.hpp"
+#include "forces/hyperelastic.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/pair_potentials.hpp"
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
+#include "forces/traction.hpp"
 #include "integrators/force_motion.hpp"
 #include "scene/parts.hpp"
 #include "tests/support/catch.hpp"
@@ -54,6 +56,9 @@ std::vector<NamedForce> forces_with_secants() {
   add(HarmonicBond{.k = 25, .length = 1.2, .tied = {{0, 1}, {1, 2}, {3, 6}}});
   add(HarmonicBond{.k = 25, .tied = {{0, 1}, {2, 5}}});
   add(Tether{.point = {0.1, 0.2, 0.3}, .k = 4, .length = 1, .tied = {{1}, {4}}});
+  add(HyperelasticForce{{.lambda = 3, .mu = 2}});
+  add(HyperelasticForce{{.material = ElasticLaw::neo_hookean, .young_modulus = 7, .poisson_ratio = 0.3}});
+  add(Traction{.surface = "side", .traction = {1, 0.5, -2}});
   for (const TermKind& kind : std::vector<TermKind>{
            {"harmonic", {250, 1.1}}, {"harmonic", {20, 0}}, {"morse", {3.5, 1.7, 0.9}}, {"fene", {30, 2.5, 1.2, 1.6}}})
     all.push_back({"bonded", Bonded{}, {kind}});
@@ -70,6 +75,20 @@ std::vector<NamedForce> forces_with_secants() {
   for (const TermKind& kind : std::vector<TermKind>{{"harmonic", {5, 0.6}}, {"periodic", {1.5, 2, half_turn}}})
     all.push_back({"bonded", Bonded{}, {}, {}, {}, {kind}});
   return all;
+}
+
+/// Tetrahedra of four particles in a row, which were elsewhere at rest, and one triangle.
+std::shared_ptr<const Mesh> mesh_along(const ParticleSystem<double>& s) {
+  auto mesh = std::make_shared<Mesh>();
+  for (Index i = 0; i < s.size(); ++i) {
+    const auto k = static_cast<double>(i);
+    mesh->rest.emplace_back(s.positions()[i] + 0.1 * Vec3<double>(std::cos(3 * k), std::sin(5 * k), std::cos(7 * k)));
+  }
+  for (Index i = 0; i + 3 < s.size(); ++i) mesh->tetrahedra.push_back({{i, i + 1, i + 2, i + 3}, 0});
+  mesh->turn_outside_in();
+  mesh->triangles = {{{0, 2, 4}, 0}};
+  mesh->surfaces = {"side"};
+  return mesh;
 }
 
 /// A charged_helix of seven charges, bonded along its way as a force wants it.
@@ -94,6 +113,7 @@ ParticleSystem<double> charged_helix(const NamedForce& of) {
     topology->dihedrals.push_back({{k, k + 1, k + 2, k + 3}, 0});
   for (Index k = 0; k + 3 < n && !of.impropers.empty(); ++k)
     topology->impropers.push_back({{k, k + 1, k + 2, k + 3}, 0});
+  topology->mesh = mesh_along(s);
   s.set_topology(topology);
   return s;
 }

@@ -183,7 +183,7 @@ TEST_CASE("units that do not fit are refused", "[structure][messages]") {
         "special contains 2; factors from 0 to 1 are expected");
   CHECK(error_of([] { io::read_structure("m.pdb"); }) ==
         "'m.pdb' has no supported format; a structure is a .data or .lmp file or data.NAME (LAMMPS), .xyz or .extxyz, "
-        "or .gro");
+        ".gro, or .msh (Gmsh)");
 }
 
 TEST_CASE("the units that LAMMPS writes into its first line are taken", "[structure]") {

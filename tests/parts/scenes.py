@@ -194,6 +194,9 @@ HAMILTONIANS = {
     "wisdom_holman": Case(PLANETS, '[hamiltonian]\ntype = "wisdom_holman"\nG = 1\n'),
 }
 
+BLOCK = ("[particles]\ntype = 'block'\ncells = [1, 1, 1]\nsize = [1, 1, 1]\ndensity = 1\nstretch = [1.2, 0.9, 1.05]\n"
+         "angular_velocity = [1.0, 0.3, 2.0]\n")
+
 FORCES = {
     "gravity": Case(PLANETS, forces("type = 'gravity'; G = 1; softening = 0.01")),
     "gravity_of_bodies": Case(ROCKS, forces(PULL)),
@@ -215,6 +218,9 @@ FORCES = {
     "harmonic_bond": Case(PAIR, forces("type = 'harmonic_bond'; chain = ['a', 'b']; k = 10; length = 0.7")),
     "tether": Case(PAIR, forces("type = 'tether'; bodies = 'all'; k = 10; length = 0.2; point = [0.0, 0.0, 0.3]")),
     "bonded": Case(CHAIN, forces("type = 'bonded'"), step=0.01, files={"chain.data": CHAIN_FILE}),
+    "hyperelastic": Case(BLOCK, forces("type = 'hyperelastic'; material = 'neo_hookean'; lambda = 1; mu = 0.8")),
+    "traction": Case(BLOCK, forces("type = 'hyperelastic'; young_modulus = 2; poisson_ratio = 0.3",
+                                   "type = 'traction'; surface = 'x_high'; traction = [0.1, 0.0, 0.05]")),
     "tides": Case(ROCKS.replace("angular_velocity = [0.3", "love_number = 0.4\nradius = 0.2\ntide_lag = 0.01\nangular_velocity = [0.3"),
                   forces(PULL, "type = 'tides'; G = 1"), rivals=FORWARD),
     "linear_drag": Case(PAIR, forces(SPRING, "type = 'linear_drag'; rate = 0.1"), rivals=FORWARD),
@@ -391,6 +397,7 @@ BUILDERS = {
     "polymer_chains": Case("[particles]\ntype = 'polymer_chains'\nchains = 2\nbeads = 4\ndensity = 0.1\nmass = 1\n"
                            "bending = 1\ntemperature = 0.5\n", forces("type = 'bonded'"), step=0.002),
     "water_box": water(),
+    "block": Case(BLOCK, forces("type = 'hyperelastic'; lambda = 1; mu = 0.8")),
 }
 
 # A list that the program has of each kind, the table of cases for it, and what a page says of it.

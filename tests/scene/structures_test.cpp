@@ -217,7 +217,7 @@ TEST_CASE("keys of structures that are wrong are refused at their lines", "[scen
         "molecule.data:1: the file says units = real, but file_units says 'reel'; take file_units out");
   CHECK(structure_refusal("structure = 'make.py'\n") ==
         "scene.toml:3: 'make.py' has no supported format; a structure is a .data or .lmp file or data.NAME (LAMMPS), "
-        ".xyz or .extxyz, or .gro");
+        ".xyz or .extxyz, .gro, or .msh (Gmsh)");
   CHECK(structure_refusal("structure = 'none.data'\n").starts_with("scene.toml:3: none.data: "));
   CHECK(structure_refusal("structure = ''\n") ==
         "scene.toml:3: structure = \"\" names no file; give one, such as \"water.data\"");

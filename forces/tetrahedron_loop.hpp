@@ -1,0 +1,264 @@
+#pragma once
+/// The loop over tetrahedra: what each does to its corners.
+
+#include "engine/force_sink.hpp"
+#include "forces/materials.hpp"
+#include "forces/mesh_elements.hpp"
+#include "forces/secant.hpp"
+#include "forces/tetrahedra_simd.hpp"
+#include "numbers/parallel.hpp"
+#include "numbers/select.hpp"
+#include "numbers/wide_sum.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+namespace noether::detail {
+
+/// Why a run cannot go on with an element. @param part  of its volume at rest
+Failure inverted_element(Index element, const std::array<Index, 4>& particles, double part,
+                         const std::vector<std::string>& names);
+
+/// A deformation F, row by row, from the edges of a tetrahedron and their inverse at rest.
+template <class Real> struct Deformation {
+  std::array<Vec3<Real>, 3> row;
+
+  /// F^T F.
+  Symmetric<Real> square() const {
+    const auto sum = [&](int i, int j) {
+      return row[0][i] * row[0][j] + row[1][i] * row[1][j] + row[2][i] * row[2][j];
+    };
+    return {sum(0, 0), sum(1, 1), sum(2, 2), sum(0, 1), sum(0, 2), sum(1, 2)};
+  }
+  Real determinant() const { return dot(row[0], cross(row[1], row[2])); }
+  /// F S.
+  Deformation times(const Symmetric<Real>& s) const {
+    Deformation product;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3<Real>& f = row[i];
+      product.row[i] = Vec3<Real>(f[0] * s.xx + f[1] * s.xy + f[2] * s.xz, f[0] * s.xy + f[1] * s.yy + f[2] * s.yz,
+                                  f[0] * s.xz + f[1] * s.yz + f[2] * s.zz);
+    }
+    return product;
+  }
+};
+
+/// F^T G + G^T F: the change of the square where F changes by G, both from the middle.
+template <class Real> Symmetric<Real> change_of_square(const Deformation<Real>& f, const Deformation<Real>& g) {
+  const auto sum = [&](int i, int j) {
+    Real total(0);
+    for (std::size_t r = 0; r < 3; ++r) total += f.row[r][i] * g.row[r][j] + g.row[r][i] * f.row[r][j];
+    return total;
+  };
+  return {sum(0, 0), sum(1, 1), sum(2, 2), sum(0, 1), sum(0, 2), sum(1, 2)};
+}
+
+/// What one evaluation sums beside the forces.
+template <class Real> struct MeshTotals {
+  WideSum<Real> energy;
+  WideTensor<Real> virial;
+
+  MeshTotals& operator+=(const MeshTotals& other) {
+    energy += other.energy;
+    virial += other.virial;
+    return *this;
+  }
+};
+
+/// Evaluates the tetrahedra of particles, or their secants from another state, and adds up what each particle feels.
+template <class Real, class M> class TetrahedronLoop {
+ public:
+  using Number = typename AtRest<Real>::type;
+
+  TetrahedronLoop(const M& material, const MeshElements<Number>& elements, const ParticleSystem<Real>& s,
+                  const ParticleSystem<Real>* from = nullptr)
+      : material_(material), elements_(elements), s_(s), from_(from) {}
+
+  void add_to(ForceSink<Real>& out) {
+    thread_local AlignedVector<Real> memory;
+    const auto wanted = static_cast<std::size_t>(elements_.padded() * MeshElements<Number>::slot_width);
+    if (memory.size() < wanted) memory.resize(wanted);
+    slots_ = memory.data();  // this thread's, written by all
+    if (out.wants_energy() || out.wants_virial()) {
+      with_virial_ = out.wants_virial();
+      const auto totals = reduce(elements_.size(), MeshTotals<Real>{},
+                                 [&](Index begin, Index end) { return evaluate<true>(begin, end); });
+      out.energy(totals.energy);
+      out.virial(totals.virial);
+    } else {
+      for_blocks(elements_.size(), [&](Index begin, Index end) { evaluate<false>(begin, end); });
+    }
+    for_blocks(s_.size(), [&](Index begin, Index end) { gather(out, begin, end); });
+    if (const Index k = inverted_.load(); k != none) tell(out, k);
+  }
+
+ private:
+  static constexpr std::uint32_t places_ahead = 96;  ///< those of some four particles
+  static constexpr Index none = std::numeric_limits<Index>::max();
+
+  template <bool with_totals> MeshTotals<Real> evaluate(Index begin, Index end) {
+    MeshTotals<Real> totals;
+    if constexpr (!with_totals && std::is_same_v<Real, double> && requires { material_.law(); }) {
+      if (from_ == nullptr && forces_in_lanes(begin, end)) return totals;
+    }
+    for (Index k = begin; k < end; ++k) {
+      if (from_ != nullptr) {
+        add_secant(k);
+      } else {
+        add_element<with_totals>(k, totals);
+      }
+    }
+    return totals;
+  }
+
+  /// Elements of a block eight at a time. @return whether no element is inverted; else they are to be evaluated singly
+  bool forces_in_lanes(Index begin, Index end) const {
+    constexpr Index group = MeshElements<Number>::group;
+    static_assert(block_size % group == 0);
+    const IsotropicLaw law = material_.law();
+    const auto& x = s_.positions();
+    const TetrahedronGroups groups = {elements_.corners(),
+                                      elements_.shapes(),
+                                      {x.component(0), x.component(1), x.component(2)},
+                                      slots_,
+                                      law.lambda / 2,
+                                      law.mu,
+                                      law.kind == ElasticLaw::neo_hookean};
+    return tetrahedron_kernels().forces(groups, begin / group, (end + group - 1) / group);
+  }
+
+  /// The edges from the first corner of element k.
+  static std::array<Vec3<Real>, 3> edges(const MeshElements<Number>& elements, Index k, const auto& place) {
+    const Vec3<Real> x = place(elements.particle(k, 0));
+    return {Vec3<Real>(place(elements.particle(k, 1)) - x), Vec3<Real>(place(elements.particle(k, 2)) - x),
+            Vec3<Real>(place(elements.particle(k, 3)) - x)};
+  }
+  Deformation<Real> deformation(Index k, const std::array<Vec3<Real>, 3>& edge) const {
+    Deformation<Real> f;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto at = static_cast<Index>(i);
+      for (Index j = 0; j < 3; ++j) {
+        f.row[i][j] = edge[0][at] * Real(elements_.shape(k, j)) + edge[1][at] * Real(elements_.shape(k, 3 + j)) +
+                      edge[2][at] * Real(elements_.shape(k, 6 + j));
+      }
+    }
+    return f;
+  }
+
+  template <bool with_totals> void add_element(Index k, MeshTotals<Real>& totals) {
+    const auto edge = edges(elements_, k, [&](Index i) { return Vec3<Real>(s_.positions()[i]); });
+    const Deformation<Real> f = deformation(k, edge);
+    const Symmetric<Real> c = f.square();
+    const auto inverted = f.determinant() <= Real(0);
+    if (any(inverted)) note(k);
+    const Real volume(elements_.shape(k, 9));
+    const Real there = select(inverted, Real(std::numeric_limits<double>::quiet_NaN()), volume);
+    const std::array<Vec3<Real>, 3> force = put(k, f.times(stress_of<Real>(material_, c)), there);
+    if constexpr (with_totals) {
+      totals.energy += there * material_.energy(c);
+      for (std::size_t a = 0; a < 3 && with_virial_; ++a) totals.virial.add_outer(edge[a], force[a]);
+    }
+  }
+
+  void add_secant(Index k) {
+    using std::abs, std::sqrt;
+    const Real half(0.5), two(2);
+    const auto edge = edges(elements_, k, [&](Index i) { return Vec3<Real>(from_->positions()[i]); });
+    const auto way = edges(elements_, k, [&](Index i) { return way_of(*from_, s_, i); });
+    std::array<Vec3<Real>, 3> middle, last;
+    for (std::size_t a = 0; a < 3; ++a) {
+      middle[a] = edge[a] + half * way[a];
+      last[a] = edge[a] + way[a];
+    }
+    const Deformation<Real> f = deformation(k, middle), first = deformation(k, edge), end = deformation(k, last);
+    if (first.determinant() <= Real(0)) note(k);
+    const Symmetric<Real> c0 = first.square(), c1 = end.square(), mean = half * (c0 + c1);
+    const Symmetric<Real> change = change_of_square(f, deformation(k, way));
+    Symmetric<Real> stress = stress_of<Real>(material_, mean);
+    const Real before = material_.energy(c0), after = material_.energy(c1);
+    const Real work = half * contract(stress, change), size2 = contract(mean, mean), step2 = contract(change, change);
+    const Real missing = after - before - work;
+    const Real scale = abs(before) + abs(after) + sqrt(contract(stress, stress) * size2);
+    if (!middle_serves(Real(sqrt(step2 / size2)), missing, scale)) stress = stress + two * missing / step2 * change;
+    put(k, f.times(stress), Real(elements_.shape(k, 9)));
+  }
+
+  /// Writes the forces on the corners of element k of a first Piola-Kirchhoff stress into its slots.
+  /// @return those on corners 1, 2, 3
+  std::array<Vec3<Real>, 3> put(Index k, const Deformation<Real>& stress, const Real& volume) {
+    std::array<Vec3<Real>, 3> force;
+    Real* const slot = slots_ + MeshElements<Number>::at(k, 0, MeshElements<Number>::slot_width);
+    const Index stride = MeshElements<Number>::group;
+    for (Index i = 0; i < 3; ++i) {
+      const Vec3<Real>& p = stress.row[static_cast<std::size_t>(i)];
+      for (Index a = 0; a < 3; ++a) {
+        const Real pull = p[0] * Real(elements_.shape(k, 3 * a)) + p[1] * Real(elements_.shape(k, 3 * a + 1)) +
+                          p[2] * Real(elements_.shape(k, 3 * a + 2));
+        force[static_cast<std::size_t>(a)][i] = -(volume * pull);
+      }
+      const Real others = (force[0][i] + force[1][i]) + force[2][i];
+      for (Index a = 0; a < 3; ++a) slot[(3 * a + i) * stride] = force[static_cast<std::size_t>(a)][i];
+      slot[(9 + i) * stride] = -others;
+    }
+    return force;
+  }
+
+  void gather(ForceSink<Real>& out, Index begin, Index end) const {
+    const std::uint32_t *const first = elements_.first(), *const places = elements_.places();
+    const Index stride = MeshElements<Number>::group;
+    const std::uint32_t last = first[elements_.particles()] - 1;
+    for (Index i = begin; i < end; ++i) {
+      if (first[i] == first[i + 1]) continue;
+      Vec3<Real> sum = Vec3<Real>::Zero();
+      for (std::uint32_t p = first[i]; p < first[i + 1]; ++p) {
+        const Real* const at = slots_ + places[p];
+        // Slots are written in the order of elements and read in that of particles: nothing foresees where.
+        const Real* const later = slots_ + places[std::min(p + places_ahead, last)];
+        for (int c = 0; c < 3; ++c) __builtin_prefetch(later + c * stride);
+        for (int c = 0; c < 3; ++c) sum[c] += at[c * stride];
+      }
+      const Real m = s_.masses()[i];
+      if (m != Real(0)) out.accelerations().add(i, Vec3<Real>(sum / m));
+    }
+  }
+
+  void note(Index k) {
+    Index known = inverted_.load();
+    while (k < known && !inverted_.compare_exchange_weak(known, k)) {
+    }
+  }
+  void tell(ForceSink<Real>& out, Index k) const {
+    const ParticleSystem<Real>& s = from_ != nullptr ? *from_ : s_;
+    const auto edge = edges(elements_, k, [&](Index i) { return Vec3<Real>(s.positions()[i]); });
+    std::array<Index, 4> particles;
+    for (std::size_t c = 0; c < 4; ++c) particles[c] = elements_.particle(k, static_cast<Index>(c));
+    const double part = least(deformation(k, edge).determinant());
+    out.fail(inverted_element(elements_.number(k), particles, part, s.names()));
+  }
+  /// The smallest of the doubles that a number holds.
+  template <class Any> static double least(const Any& x) {
+    if constexpr (requires { x.lane; }) {
+      double smallest = x.lane[0];
+      for (const double one : x.lane) smallest = one < smallest ? one : smallest;
+      return smallest;
+    } else if constexpr (requires { x.slope; }) {
+      return least(x.value);
+    } else {
+      return static_cast<double>(x);
+    }
+  }
+
+  const M& material_;
+  const MeshElements<Number>& elements_;
+  const ParticleSystem<Real>&s_, *from_;
+  Real* slots_ = nullptr;
+  bool with_virial_ = false;
+  std::atomic<Index> inverted_ = none;
+};
+
+}  // namespace noether::detail
