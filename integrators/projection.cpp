@@ -42,6 +42,12 @@ void ProjectionOptions::check_directions() const {
 
 bool ProjectionOptions::has(Invariant one) const { return std::count(onto.begin(), onto.end(), one) > 0; }
 
+std::string ProjectionOptions::cost() const {
+  return how == Projection::symmetric
+             ? "some 7 iterations a step, each of them the step itself, forces and an energy"
+             : "an energy a step; where it moves the state, forces too, and an energy for each iteration, mostly one";
+}
+
 std::string ProjectionOptions::words() const {
   std::string text;
   for (const Invariant one : onto) text += (text.empty() ? "" : ", ") + choice_name(one);

@@ -95,6 +95,8 @@ struct ProjectionOptions {
   void check_directions() const;
 
   bool has(Invariant one) const;
+  /// What it adds to a step, in words.
+  std::string cost() const;
   /// "energy, angular_momentum".
   std::string words() const;
   std::string signature() const;

@@ -179,7 +179,7 @@ TEST_CASE(
     return sim.evaluations().projection.mean();
   };
   CHECK(mean(test::classical_over(Gravity{}, method("rk4"))) < 0.7);
-  CHECK(mean(test::classical_over(Gravity{}, method("euler"))) < 1.4);
+  CHECK(mean(test::classical_over(Gravity{}, method("euler"))) < 2.2);  // 1.1 over 200 turns: it spirals out
   CHECK(mean(compose(pair, schemes::verlet)) < 0.01);
 }
 

@@ -15,6 +15,7 @@
 #include "tests/support/planets.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -236,6 +237,20 @@ struct LaplaceY {
   }
 };
 
+/// Energy and angular momentum about z of a pair, as a program would write them.
+struct EnergyAndTurn {
+  template <class Real> std::array<Real, 2> operator()(const ParticleState<Real>& s) const {
+    using std::sqrt;
+    const Vec3<Real> r = s.x(1) - s.x(0);
+    Real energy = -s.m(0) * s.m(1) / Real(sqrt(norm2(r))), turn_z(0);
+    for (Index i = 0; i < s.size(); ++i) {
+      energy += s.m(i) * norm2(s.v(i)) / Real(2);
+      turn_z += s.m(i) * cross(s.x(i), s.v(i))[2];
+    }
+    return {energy, turn_z};
+  }
+};
+
 /// Predators and prey, on closed curves.
 struct Predators {
   static constexpr auto describe() { return part<Predators>("predators", "they eat and are eaten"); }
@@ -271,6 +286,10 @@ TEST_CASE("an invariant of one's own is held, of particles and of first-order sy
   REQUIRE(outcome.ok());
   CHECK(std::abs(laplace(sim.particles())) < 1e-13);
   CHECK(std::abs(test::energy_of(sim.particles()) - test::energy_of(test::kepler_pair())) < 1e-14);
+
+  Simulation<double> both(test::kepler_pair(), projected(pair_by("rk4"), {}, EnergyAndTurn{}), turn / 200);
+  REQUIRE(both.run(2000).ok());
+  CHECK_THAT(test::error_after_turns(both.particles()), WithinRel(1.914e-5, 0.02));
 
   for (const char* name : {"heun", "rk4", "bdf_2"}) {
     CAPTURE(name);
