@@ -38,11 +38,21 @@ template <class Real> bool middle_serves(const Real& part, const Real& missing, 
   return part * part <= epsilon || abs(missing) <= Real(64) * epsilon * scale;
 }
 
+/// The mean of -U'(r)/r over r^2 from one value to the other, by Gauss's rule of three points.
+template <class Real, class Terms> Real mean_force(const Real& from2, const Real& step, const Terms& terms) {
+  using std::sqrt;
+  const Real middle2 = from2 + step / Real(2), away = sqrt(Real(15)) / Real(10) * step;
+  const Real outer = terms(middle2 - away).force + terms(middle2 + away).force;
+  return (Real(5) * outer + Real(8) * terms(middle2).force) / Real(18);
+}
+
 /// Force over distance, k, of a pair that goes from the distance vector d0 to d1: f = k (d0 + d1) / 2 on the first of
 /// them, with f . (d1 - d0) = U0 - U1 to rounding.
 ///
-///     k = - 2 (U1 - U0) / (r1^2 - r0^2);   -U'(r)/r in the middle where that does the same work
+///     k = - 2 (U1 - U0) / (r1^2 - r0^2)
 ///
+/// That is the mean of -U'(r)/r over r^2, and over short steps it is found as such: a quotient of small differences
+/// would be rounded far more. The mean serves where it does the work of the energy, as it does off kinks and jumps.
 /// @param step  r1^2 - r0^2, as (d0 + d1) . (d1 - d0): the difference of the squares is rounded far more
 /// @param terms  (r2): energy and -U'(r)/r of the pair, as `PairTerms`
 /// @param end2  square of the distance where the energy ends or jumps; 0: nowhere
@@ -50,13 +60,14 @@ template <class Real> bool middle_serves(const Real& part, const Real& missing, 
 template <class Real, class Terms>
 Real secant_of(const Real& from2, const Real& to2, const Real& step, const Terms& terms, const Real& end2 = Real(0)) {
   using std::abs;
-  const Real size = to2 + from2, middle = terms(size / Real(2)).force;
-  if (step == Real(0)) return middle;
-  const Real before = terms(from2).energy, after = terms(to2).energy;
-  const Real missing = before - after - middle * step / Real(2);
-  const bool crosses = (from2 < end2) != (to2 < end2);
-  if (!crosses && middle_serves(Real(step / size), missing, Real(abs(before) + abs(after) + abs(middle) * size))) {
-    return middle;
+  if (step == Real(0)) return terms(from2).force;
+  const Real size = to2 + from2, before = terms(from2).energy, after = terms(to2).energy;
+  // Three points are right to the 6th power of the step over the distances.
+  const double epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
+  const bool is_short = abs(step) <= Real(0.4 * std::cbrt(std::sqrt(epsilon))) * size;
+  if (is_short && (from2 < end2) == (to2 < end2)) {
+    const Real mean = mean_force(from2, step, terms), missing = before - after - mean * step / Real(2);
+    if (middle_serves(Real(step / size), missing, Real(abs(before) + abs(after) + abs(mean) * size))) return mean;
   }
   return Real(2) * (before - after) / step;
 }

@@ -11,6 +11,9 @@ namespace {
 
 /// Unknowns up to which the matrix is dense by default.
 constexpr Index most_dense_unknowns = 300;
+/// Unknowns from which sweeps are tried before a matrix is found, and how much each of them has to shrink the updates.
+constexpr Index least_swept = 5;
+constexpr double worth_a_sweep = 0.1;
 
 /// Relative length of differences to one side: above the square root of rounding, since a secant is a quotient of small
 /// numbers.
@@ -80,6 +83,26 @@ bool ContinuedRoot<Real>::correct(StepEquations<Real>& equations, const Real& pa
   };
   // The next update corrects what this one leaves.
   return solve_by_krylov(map, residual_, {.residual = 100 * product, .product = product}, update_);
+}
+
+/// Sweeps x <- g(x) over the whole step, without a matrix. @return whether they shrink fast enough to be worth it
+template <class Real> bool ContinuedRoot<Real>::sweep(StepEquations<Real>& equations, Vector<Real>& x) {
+  constexpr int most = 40;
+  const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
+  const Real whole(1);
+  double before = 0;
+  for (int iteration = 0; iteration < most; ++iteration) {
+    equations.map(whole, x, value_);
+    update_ = value_ - x;
+    x.swap(value_);
+    const double now = equations.size_of(whole, update_, x).whole;
+    if (!std::isfinite(now)) return false;
+    const double shrinks = iteration == 0 ? 0 : now / before;
+    if (now == 0 || (iteration > 0 && now * shrinks <= rounding / 64)) return true;
+    if (shrinks > worth_a_sweep) return now <= 64 * rounding;
+    before = now;
+  }
+  return false;
 }
 
 /// Newton's iteration from x, whose updates have to shrink to a quarter or less from the first one on.
@@ -158,6 +181,13 @@ template <class Real>
 std::optional<Failure> ContinuedRoot<Real>::solve(StepEquations<Real>& equations, Vector<Real>& x, double h,
                                                   Evaluations& count) {
   trial_ = x;
+  if (x.size() >= least_swept) {
+    if (sweep(equations, trial_)) {
+      x = trial_;
+      return {};
+    }
+    trial_ = x;
+  }
   if (contract(equations, Real(1), trial_, count) == Found::yes) {
     x = trial_;
     return {};

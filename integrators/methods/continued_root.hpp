@@ -29,9 +29,10 @@ template <class Real> class StepEquations {
 /// and so on, each root the guess of the next one, in parts as short as that condition wants them. Where parts become
 /// shorter than 2^-12 of the step the root ends in a fold, and the step has a named outcome.
 ///
-/// I - dg/dx is found by differences of g in every direction, or, matrix-free, in those that a Krylov method asks for.
-/// @cost dense: 2 n evaluations of g and n^3 / 3 for a matrix, three to six evaluations with it; matrix-free: some
-///       5 sqrt(condition) evaluations for each of four updates
+/// Sweeps x <- g(x) are tried first where there are many unknowns; steps that are not stiff need no more. I - dg/dx is
+/// found by differences of g in every direction, or, matrix-free, in those that a Krylov method asks for.
+/// @cost sweeps: 5 to 16 evaluations of g; dense: 2 n evaluations and n^3 / 3 for a matrix, three to six evaluations
+///       with it; matrix-free: some 5 sqrt(condition) evaluations for each of four updates
 /// @source OrtegaRheinboldt1970, AllgowerGeorg1990
 template <class Real> class ContinuedRoot {
  public:
@@ -44,6 +45,7 @@ template <class Real> class ContinuedRoot {
 
  private:
   enum class Found { yes, no, unsolved };
+  bool sweep(StepEquations<Real>& equations, Vector<Real>& x);
   Found contract(StepEquations<Real>& equations, const Real& part, Vector<Real>& x, Evaluations& count);
   bool renew(StepEquations<Real>& equations, const Real& part, const Vector<Real>& x);
   bool correct(StepEquations<Real>& equations, const Real& part, const Vector<Real>& x);

@@ -30,7 +30,7 @@ template <class Real> class CountedEnergy {
 /// What is missing of a difference of energies, over the square of the displacement; 0 where it is rounding.
 template <class Real> Real missing_part(const Real& missing, const Real& scale, const Real& square) {
   using std::abs;
-  const Real rounding = Real(4 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
+  const Real rounding = std::numeric_limits<Real>::epsilon();
   return abs(missing) <= rounding * scale || !(square > Real(0)) ? Real(0) : Real(missing / square);
 }
 

@@ -206,6 +206,19 @@ TEST_CASE("explain counts the evaluations of kernels, and kicks of forces that h
   }
 }
 
+TEST_CASE("explain says what a method exact in energy keeps, and what does not let it", "[cli][explain]") {
+  const SceneFolder folder;
+  const auto with = [&](const std::string& method, const std::string& sets = "") {
+    return output(folder, "explain scene.toml --set integrator.method=" + method + sets);
+  };
+  CHECK(has(with("simo_tarnow_wong"), "\nkeeps E, p and L\n"));
+  CHECK(has(with("gonzalez"), "\nkeeps E and p; L not, because of the method\n"));
+  CHECK(has(with("itoh_abe"), "\nkeeps E; p not, because of the method; L not, because of the method\n"));
+  CHECK(has(with("simo_tarnow_wong", " --set hamiltonian.force.0.type=henon_heiles"),
+            "\nkeeps E; p not, because of henon_heiles; L not, because of henon_heiles\n"));
+  CHECK_FALSE(has(with("verlet"), "\nkeeps "));
+}
+
 TEST_CASE("explain says where numbers are single", "[cli][messages]") {
   const SceneFolder pair(close_pair);
   const std::string line =
@@ -386,6 +399,8 @@ TEST_CASE("describe says of a method what it serves, as it claims itself", "[cli
   }
   says("encke_gauss_8", "gravity without softening, and beside it forces that depend on positions and time",
        "gravity of point masses");
+  says("simo_tarnow_wong", "forces that know their secants", "q'' = -M^-1 grad U(q)");
+  says("gonzalez", "forces of an energy of positions alone, and Hamiltonian systems", "y' = J grad H(y)");
   says("newmark", "all forces, also those that depend on velocities, but no first-order system", "q'' = a(t, q, q')");
 }
 

@@ -91,7 +91,7 @@ TEST_CASE("any number of threads gives the same bits", "[determinism]") {
 }
 
 TEST_CASE("matrix-free implicit steps have the same bits for any number of threads", "[determinism]") {
-  for (const char* name : {"newmark", "bdf_2"}) {
+  for (const char* name : {"newmark", "bdf_2", "simo_tarnow_wong", "gonzalez"}) {
     check_threads([&] {
       return final_state(test::cloud(300),
                          test::classical_over(Gravity{.G = 1, .softening = 0.05},

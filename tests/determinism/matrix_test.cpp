@@ -338,9 +338,25 @@ std::vector<Twin> two_word_twins() {
   return twins;
 }
 
+/// Methods exact in energy, which serve neither tracers, all of them, nor forces that depend on time.
+std::vector<Twin> exact_energy_twins() {
+  std::vector<Twin> twins;
+  for (const char* name : {"simo_tarnow_wong", "gonzalez", "itoh_abe_symmetric"}) {
+    twins.push_back(
+        {.name = name,
+         .bodies = test::outer_planets(),
+         .program = test::classical_over(test::field_of(Gravity{.G = test::outer_G}), method(name)),
+         .step = 60,
+         .hamiltonian = fmt::format(
+             "[hamiltonian]\ntype='kinetic_potential'\nG={}\n[[hamiltonian.force]]\ntype='gravity'\n", test::outer_G),
+         .method = name});
+  }
+  return twins;
+}
+
 void check_all_twins(std::size_t stride) {
   for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), turning_twins(),
-                            rigid_twins(), two_word_twins(), corrected_twins(),
+                            rigid_twins(), two_word_twins(), exact_energy_twins(), corrected_twins(),
                             wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
                             wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);
