@@ -229,8 +229,12 @@ Spectrum spectrum_along(const Scene& scene) {
     std::atomic<bool> over{false};
     sim.stop_on(&over);
     sim.on_progress([&](const Progress& now) { over = now.seconds > 1; });
-    for (int k = 1; k <= looks; ++k) {
-      if (!sim.run_until(scene.integrator.start + end * k / looks).ok()) break;
+    // Whole steps where they are given.
+    const double steps = turns ? std::max(std::round(end / looks / setting.step), 1.0) : 0;
+    for (int k = 1; k <= looks && !(k * steps * setting.step > end + setting.step / 2); ++k) {
+      const Outcome came =
+          turns ? sim.run(static_cast<std::int64_t>(steps)) : sim.run_until(scene.integrator.start + end * k / looks);
+      if (!came.ok()) break;
       if (turns) field->bind(sim.particles());
       const Spectrum one = spectrum_of(*field, sim.particles(), sim.time());
       found.fastest = std::max(found.fastest, one.fastest);
