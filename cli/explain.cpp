@@ -152,6 +152,7 @@ void sort_parts(const Scene& scene, Explanation& e) {
     const std::string name = monitor                                      ? "monitor " + watch.monitor.name
                              : watch.kind == SceneWatch::Kind::trajectory ? "writer trajectory"
                                                                           : "writer checkpoint";
+    const std::string beside = watch.sites ? ", frames with sites of bodies" : "";
     const std::size_t listed = watch.cadence.times.size();
     const std::string when =
         listed > 0               ? fmt::format("at {} of a list", counted(static_cast<std::int64_t>(listed), "time"))
@@ -163,7 +164,7 @@ void sort_parts(const Scene& scene, Explanation& e) {
         watch.cadence.after ? fmt::format(", not before {:.12g}{}", *watch.cadence.after, unit) : "";
     const std::string cost =
         watch.monitor.cost && listed == 0 ? watch.monitor.cost(scene.particles.size(), watch.cadence.steps) : "";
-    e.in.push_back(name + ", " + when + later + (scene.default_watches ? ", by default" : "") +
+    e.in.push_back(name + ", " + when + later + beside + (scene.default_watches ? ", by default" : "") +
                    (cost.empty() ? "" : ": " + cost));
   }
   for (const SceneStop& stop : scene.stops) {

@@ -35,8 +35,10 @@ void attach_writers(Simulation<double>& sim, const Scene& scene, const SceneFile
     samples = samples || watch.kind == SceneWatch::Kind::monitor;
     if (watch.kind != SceneWatch::Kind::trajectory || files.trajectory.empty()) continue;
     frames = true;
-    detail::attach(sim, watch.cadence,
-                   io::TrajectoryWriter(files.trajectory, {.scene_toml = scene.effective_toml, .lost = files.lost}));
+    detail::attach(
+        sim, watch.cadence,
+        io::TrajectoryWriter(files.trajectory,
+                             {.scene_toml = scene.effective_toml, .lost = files.lost, .sites = watch.sites}));
   }
   if (!frames && samples && !files.trajectory.empty()) {
     sim.every(once, io::TrajectoryWriter(files.trajectory,

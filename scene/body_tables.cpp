@@ -28,6 +28,19 @@ double gravitation(const TableReader& reader) {
   return context.G ? reader.number(*context.G, "G", "length^3/mass/time^2") : context.units->G;
 }
 
+std::optional<BodyPlace> place_of_body(const SceneValue& particles, std::string_view name) {
+  for (const char* key : {"body", "rigid_body"}) {
+    const SceneValue* tables = particles.find(key);
+    const auto* list = tables != nullptr ? tables->get<SceneValue::Array>() : nullptr;
+    for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) {
+      const SceneValue* given = (*list)[k].find("name");
+      const std::string* text = given != nullptr ? given->get<std::string>() : nullptr;
+      if (text != nullptr && *text == name) return BodyPlace{key, &(*list)[k]};
+    }
+  }
+  return {};
+}
+
 std::optional<io::BodyEpoch> julian_day_of(const SceneValue& value) {
   const std::string* text = value.get<std::string>();
   if (text == nullptr || !text->starts_with("JD ")) return {};
@@ -352,21 +365,13 @@ class BodyTables {
 
   /// What is wrong where a body is in a table of the other kind than `of`; nothing where it is not.
   std::string of_the_other_kind(const std::string& name, const TableReader& of) const {
-    for (const char* key : {"body", "rigid_body"}) {
-      const SceneValue* tables = reader_.table().find(key);
-      const auto* list = tables != nullptr ? tables->get<SceneValue::Array>() : nullptr;
-      const auto is_it = [&](const SceneValue& table) { return &table == &of.table(); };
-      const auto has_it = [&](const SceneValue& table) {
-        const SceneValue* given = table.find("name");
-        const std::string* text = given != nullptr ? given->get<std::string>() : nullptr;
-        return text != nullptr && *text == name;
-      };
-      if (list == nullptr || std::any_of(list->begin(), list->end(), is_it)) continue;
-      if (std::any_of(list->begin(), list->end(), has_it)) {
-        return fmt::format("; put a [[particles.{}]] first in the file, and all tables of that kind come first", key);
-      }
-    }
-    return {};
+    const std::optional<BodyPlace> place = place_of_body(reader_.table(), name);
+    if (!place) return {};
+    const auto* list = reader_.table().find(place->key)->get<SceneValue::Array>();
+    const auto is_it = [&](const SceneValue& table) { return &table == &of.table(); };
+    if (std::any_of(list->begin(), list->end(), is_it)) return {};
+    return fmt::format("; put a [[particles.{}]] first in the file, and all tables of that kind come first",
+                       place->key);
   }
 
   /// The bodies that `about` names: one by a text, several by a list.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace noether {
@@ -23,6 +24,14 @@ struct BodyTableOptions {
 /// @throws SceneError
 ParticleSystem<double> add_body_tables(TableReader& reader, SceneValue& effective, ParticleSystem<double> s,
                                        BodyTableOptions options, std::vector<std::string>& warnings);
+
+/// Where a body stands in [particles]: the key of the tables of its kind, `body` or `rigid_body`, and its own table.
+struct BodyPlace {
+  const char* key;
+  const SceneValue* table;
+};
+/// The place of the first body of a name; empty where no table has it.
+std::optional<BodyPlace> place_of_body(const SceneValue& particles, std::string_view name);
 
 /// G of the scene [length^3/mass/time^2].
 double gravitation(const TableReader& reader);

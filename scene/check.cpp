@@ -4,6 +4,7 @@
 #include "integrators/composition.hpp"
 #include "neighbors/neighbor_images.hpp"
 #include "numbers/text.hpp"
+#include "scene/body_tables.hpp"
 #include "scene/foreign_names.hpp"
 #include "scene/read_constraints.hpp"
 #include "scene/read_particles.hpp"
@@ -202,18 +203,9 @@ class SceneCheck {
 
   /// The line of the table of a particle; that of all particles where it has none, or cannot be told from others.
   int line_of_body(const SceneValue& particles, Index of) const {
-    const SceneValue::Array* points = nullptr;
-    for (const char* key : {"body", "rigid_body"}) {
-      const SceneValue* tables = particles.find(key);
-      const auto* list = tables != nullptr ? tables->get<SceneValue::Array>() : nullptr;
-      if (list == nullptr) continue;
-      for (const SceneValue& table : *list) {
-        const SceneValue* name = table.find("name");
-        const std::string* text = name != nullptr ? name->get<std::string>() : nullptr;
-        if (text != nullptr && *text == scene_.particles.name(of)) return table.line;
-      }
-      if (key == std::string_view("body")) points = list;
-    }
+    if (const auto place = place_of_body(particles, scene_.particles.name(of))) return place->table->line;
+    const SceneValue* tables = particles.find("body");
+    const auto* points = tables != nullptr ? tables->get<SceneValue::Array>() : nullptr;
     const bool all_there = points != nullptr && std::ssize(*points) == scene_.particles.size();
     return all_there ? (*points)[static_cast<std::size_t>(of)].line : particles.line;
   }

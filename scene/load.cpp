@@ -2,6 +2,7 @@
 
 #include "integrators/all_schemes.hpp"
 #include "io/files.hpp"
+#include "io/trajectory_sites.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/check.hpp"
 #include "scene/default_watches.hpp"
@@ -310,6 +311,19 @@ class SceneReader {
     scene_.hamiltonian.forces.push_back(std::move(force));
   }
 
+  /// Whether frames are to have the sites of bodies. Only where they are, the effective scene says so: scenes from
+  /// before there were any go on.
+  bool frames_have_sites(TableReader& reader, SceneValue& effective) const {
+    if (!reader.flag("sites", false)) return false;
+    if (!io::has_several_sites(scene_.particles)) {
+      reader.fail("sites",
+                  "frames have the sites of rigid bodies beside their centres, but no body has more than one "
+                  "site; take the key out");
+    }
+    effective.put("sites", SceneValue::of(true, reader.line("sites")));
+    return true;
+  }
+
   void read_watches(TableReader& top) {
     const auto tables = tables_of(top, "every");
     SceneValue::Array list;
@@ -327,6 +341,7 @@ class SceneReader {
       for (const char* key : {"every", "steps", "times", "after"}) reader.find(key);
       if (kind != nullptr) watch.monitor = kind->read(reader);
       if (kind == nullptr && type == "checkpoint") reader.find("wall");
+      if (kind == nullptr && type == "trajectory") watch.sites = frames_have_sites(reader, effective);
       reader.finish();
       for (const SceneWatch& other : scene_.watches) {
         if (type == "trajectory" && other.kind == watch.kind) {

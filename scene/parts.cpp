@@ -235,7 +235,7 @@ std::vector<const OptionGroup*> Parts::method_options() const {
   return groups;
 }
 
-std::vector<PartInfo> writer_parts() { return {part_info<io::TrajectoryWriter>(), part_info<io::CheckpointWriter>()}; }
+std::vector<PartInfo> writer_parts() { return {part_info<io::TrajectoryOptions>(), part_info<io::CheckpointWriter>()}; }
 
 std::vector<std::pair<std::string, PartInfo>> other_parts() {
   return {

@@ -196,6 +196,7 @@ class Parts {
     ForceClaims claims = {};               ///< of the force with its defaults
     std::string only_once = {};            ///< why it does not stand twice in a scene; empty: it may
     bool about_heaviest = false;           ///< it takes particle 0 for the heaviest one
+    std::string masses_key = {};           ///< its flag of whether masses attract each other in it; empty: it has none
   };
   struct ConstraintKind {
     PartInfo info;
@@ -264,6 +265,7 @@ class Parts {
                    particles, columns_of<F>(), claims_of(force_of(F{}))};
     if constexpr (requires { F::only_once; }) kind.only_once = F::only_once;
     if constexpr (requires { F::about_heaviest; }) kind.about_heaviest = F::about_heaviest;
+    if constexpr (requires { F::masses_key; }) kind.masses_key = F::masses_key;
     put(forces_, std::move(kind));
     return *this;
   }

@@ -80,16 +80,15 @@ void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind,
   }
   const bool attracts = std::any_of(made.splitting.own.begin(), made.splitting.own.end(),
                                     [](const SceneForce& other) { return other.force.claims().kepler; });
-  if (attracts && force.force.claims().on_bodies && force.force.claims().kepler) {
-    reader.fail("type", fmt::format("{} already attracts the masses, so {} would attract them twice; give point_masses "
-                                    "= false",
-                                    made.splitting.name, kind.info.name));
+  const bool has_key = !kind.masses_key.empty();
+  if (has_key && attracts && force.force.claims().kepler) {
+    reader.fail("type", fmt::format("{} already attracts the masses, so {} would attract them twice; give {} = false",
+                                    made.splitting.name, kind.info.name, kind.masses_key));
   }
-  if (!attracts && force.force.claims().on_bodies && !force.force.claims().kepler &&
-      reader.table().find("point_masses") != nullptr) {
-    reader.fail("point_masses", fmt::format("point_masses = false leaves out the attraction of the masses, which {} "
-                                            "does not have; take it out",
-                                            made.splitting.name));
+  if (has_key && !attracts && !force.force.claims().kepler && reader.table().find(kind.masses_key) != nullptr) {
+    reader.fail(kind.masses_key, fmt::format("{} = false leaves out the attraction of the masses, which {} does not "
+                                             "have; take it out",
+                                             kind.masses_key, made.splitting.name));
   }
   // Forces of several names that must not stand twice for one reason are one effect.
   const auto has_its_effect = [&](const SceneForce& other) {

@@ -86,6 +86,7 @@ struct SceneWatch {
   Kind kind = Kind::monitor;
   SceneMonitor monitor;
   Cadence cadence;
+  bool sites = false;  ///< frames have the sites of rigid bodies too
 };
 
 /// One `[[verdict]]`: what runs of the scene show (study/suite.hpp). A run passes it over.

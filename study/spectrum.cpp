@@ -1,5 +1,6 @@
 #include "study/spectrum.hpp"
 
+#include "engine/bodies.hpp"
 #include "integrators/eigenvalues.hpp"
 #include "integrators/stiffness.hpp"
 #include "numbers/error.hpp"
@@ -221,12 +222,20 @@ Spectrum spectrum_along(const Scene& scene) {
   if (end == 0 || is_linear(scene) || !scene.hamiltonian.constraints.empty() || scene.system) return found;
   constexpr int looks = 64;
   try {
-    Simulation<double> sim = assemble(variant(scene, candidate(scene, "dop853"), {.step = 0, .tolerance = 1e-8}));
+    const bool turns = has_bodies(scene.particles);
+    const Candidate who = candidate(scene, turns ? scene.integrator.method : "dop853");
+    const Setting setting{.step = turns ? scene.integrator.step : 0, .tolerance = turns ? 0 : 1e-8};
+    Simulation<double> sim = assemble(variant(scene, who, setting));
     std::atomic<bool> over{false};
     sim.stop_on(&over);
     sim.on_progress([&](const Progress& now) { over = now.seconds > 1; });
-    for (int k = 1; k <= looks; ++k) {
-      if (!sim.run_until(scene.integrator.start + end * k / looks).ok()) break;
+    // Whole steps where they are given.
+    const double steps = turns ? std::max(std::round(end / looks / setting.step), 1.0) : 0;
+    for (int k = 1; k <= looks && !(k * steps * setting.step > end + setting.step / 2); ++k) {
+      const Outcome came =
+          turns ? sim.run(static_cast<std::int64_t>(steps)) : sim.run_until(scene.integrator.start + end * k / looks);
+      if (!came.ok()) break;
+      if (turns) field->bind(sim.particles());
       const Spectrum one = spectrum_of(*field, sim.particles(), sim.time());
       found.fastest = std::max(found.fastest, one.fastest);
       found.steepest = std::max(found.steepest, one.steepest);

@@ -50,7 +50,8 @@ Operator weighted_hessian(VectorField<double>& f, double t, const Vector<double>
 Spectrum spectrum_at(const Scene& scene, const ParticleSystem<double>& s);
 
 /// The spectrum of a scene on its way: of 64 states of a run by `dop853` over the scene's own length, at most 1000 of
-/// its steps, the fastest oscillation counts. Of a linear scene, or one that this cannot run, the start alone.
+/// its steps, the fastest oscillation counts. A scene of rigid bodies, which `dop853` does not turn, runs by its own
+/// method: forces on places change as bodies turn. Of a linear scene, or one that this cannot run, the start alone.
 /// @cost one second of wall time at most, and 64 spectra
 Spectrum spectrum_along(const Scene& scene);
 

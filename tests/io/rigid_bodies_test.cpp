@@ -250,6 +250,34 @@ TEST_CASE("a run of rigid bodies begins from a frame", "[io][rigid_bodies]") {
   CHECK((whole.column<BodySpin>()[0] - rest.column<BodySpin>()[0]).norm() < 1e-15);
 }
 
+TEST_CASE("a scene asks for the sites of its bodies in frames", "[io][rigid_bodies]") {
+  const ScratchFolder folder;
+  const auto text = [](const std::string& body, const std::string& key) {
+    return "units = 'reduced'\n[[particles.rigid_body]]\nname = 'rock'\nangular_velocity = [0.1, 0.2, 1]\n" + body +
+           "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'harmonic_field'\nk = 1\n"
+           "[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 4\n[[every]]\ntype = 'trajectory'\nsteps = 2\n" +
+           key;
+  };
+  const std::string sites =
+      "site = [{place = [0.1, 0, 0], mass = 0.1}, {place = [0, 0.2, 0], mass = 0.1}, {place = [0, 0, 0.3], mass = "
+      "0.1}]\n";
+  const auto frames_of = [&](const std::string& key, const char* name) {
+    const Scene scene = read_scene(text(sites, key), folder / "scene.toml");
+    Simulation<double> sim = assemble(scene, {.trajectory = folder / name, .checkpoint = {}});
+    REQUIRE(sim.run(4).ok());
+    return scene.effective_toml;
+  };
+  CHECK(frames_of("sites = true\n", "with.h5").find("sites = true") != std::string::npos);
+  CHECK(frames_of("", "without.h5") == frames_of("sites = false\n", "without.h5"));
+  const std::string path = "/particles/sites/position/value";
+  CHECK(io::Hdf5File::open_to_read(folder / "with.h5").open(path).shape() == std::vector<Index>{3, 3, 3});
+  CHECK_FALSE(io::Hdf5File::open_to_read(folder / "without.h5").has(path));
+  CHECK(io::verify(folder / "with.h5").damaged.empty());
+  const std::string refused =
+      error_of([&] { read_scene(text("mass = 1\nsemi_axes = [3, 2, 1]\n", "sites = true\n"), folder / "scene.toml"); });
+  CHECK(refused.find("but no body has more than one site") != std::string::npos);
+}
+
 TEST_CASE("bodies of tables beside those of a frame with types are refused, of both kinds", "[io][rigid_bodies]") {
   const ScratchFolder folder;
   io::write_one_frame(folder / "run.h5", mixture(), 3, 0.25);

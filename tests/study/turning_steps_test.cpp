@@ -1,6 +1,7 @@
 // What `stability` and `explain` say of bodies that turn.
 
 #include "study/turning_steps.hpp"
+#include "study/spectrum.hpp"
 #include "study/stability.hpp"
 #include "tests/study/scenes.hpp"
 #include "tests/support/catch.hpp"
@@ -62,6 +63,21 @@ TEST_CASE("a body that falls leaves by itself, and no step is blamed for it", "[
     INFO(to_text(found));
     CHECK((!found.rows.at(0).limit_step || *found.rows[0].limit_step > 0.5));
   }
+}
+
+TEST_CASE("frequencies of a scene of bodies are those on its way, as of points", "[stability][bodies]") {
+  // From the far end of an orbit of e = 0.5 once round: near the star they are 3^(3/2) times those of the start.
+  const Scene orbit = read_scene(
+      "units = 'reduced'\n[[particles.rigid_body]]\nname = 'star'\nmass = 1\ninertia = [1e-5, 1e-5, 1e-5]\n"
+      "x = [0, 0, 0]\nv = [0, 0, 0]\n[[particles.rigid_body]]\nname = 'rock'\nmass = 1e-6\n"
+      "inertia = [1e-13, 2e-13, 2.5e-13]\na = 1\ne = 0.5\nM = 3.14159265358979\nangular_velocity = [0, 0, 1]\n"
+      "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'gravity_of_bodies'\n"
+      "[integrator]\nmethod = 'srkn14a'\nstep = 0.05\nsteps = 126\n",
+      "orbit.toml");
+  const double start = spectrum_at(orbit, orbit.particles).fastest, way = spectrum_along(orbit).fastest;
+  CHECK(std::abs(start - std::pow(1.5, -1.5)) < 1e-3);
+  CHECK(way / start > 4.9);
+  CHECK(way / start < 5.2);
 }
 
 TEST_CASE("points do not turn, nor bodies without spin", "[stability][bodies]") {
