@@ -226,6 +226,23 @@ TEST_CASE("adaptive methods keep the lengths of their steps, and states between 
   }
 }
 
+TEST_CASE("states between steps of one length are projected, and the run does not know of it",
+          "[integrators][projected]") {
+  for (const char* name : {"dormand_prince_5", "dop853", "rodas_4", "encke_gauss_8", "wide_gauss_8"}) {
+    CAPTURE(name);
+    const auto run = [&](const ProjectionOptions& options, bool look) {
+      Simulation<double> sim(test::kepler_pair(), pair_held(name, options), turn / 50);
+      Energy* energy = look ? &sim.every_time(0.037, Energy()) : nullptr;
+      REQUIRE(sim.run(50).ok());
+      return std::pair(look ? energy->worst() : 0, sim.particles());
+    };
+    const auto [worst, end] = run({.onto = to_both}, true);
+    CHECK(worst < 1e-13);
+    CHECK(test::same_bits(run({.onto = to_both}, false).second, end));
+    if (pair_by(name).claims().order < 10) CHECK(run({}, true).first > 1e-8);
+  }
+}
+
 namespace {
 
 /// y of Laplace's vector of a pair with G (m1 + m2) = 1.
