@@ -368,6 +368,9 @@ TEST_CASE("what cannot be projected onto is refused in one line", "[integrators]
   CHECK_THAT(refusal(pair_by("verlet"), {.onto = to_angular, .how = Projection::hamiltonian}),
              Contains("{J_z, J_z} = 0"));
   CHECK_THAT(refusal(pair_by("verlet"), {.onto = to_energy, .how = Projection::hamiltonian}), Contains("{H, H} = 0"));
+  CHECK_THROWS_WITH(Simulation<double>(test::kepler_pair(),
+                                       projected(pair_by("verlet"), {.how = Projection::hamiltonian}, LaplaceY{}), 0.1),
+                    Contains("{g, g} = 0"));
   CHECK_THAT(refusal(pair_by("verlet"), {.onto = to_energy, .how = Projection::oblique}), Contains("has no direction"));
   CHECK_THAT(refusal(pair_by("adams_bashforth_4"), {.onto = to_energy, .how = Projection::symmetric}),
              Contains("goes on from earlier states"));
