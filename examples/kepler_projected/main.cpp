@@ -62,4 +62,5 @@ int main() {
     const Outcome outcome = follow(rk4, way.name, way.onto.size() == 2);
     if (!outcome.ok()) return exit_code(outcome);
   }
+  return 0;
 }
