@@ -58,9 +58,9 @@ double turn_after(const std::string& tables) {
   Parts parts = standard_parts();
   parts.add_decorator<HeldTurn>();
   Simulation<double> sim = assemble(read_scene(pair_by_rk4 + tables, "scene.toml", parts));
-  const double before = angular_momentum_of_pair(sim.particles())[2];
+  const double before = pairs::angular_momentum_of_pair(sim.particles())[2];
   REQUIRE(sim.run(100).ok());
-  return std::abs(angular_momentum_of_pair(sim.particles())[2] - before);
+  return std::abs(pairs::angular_momentum_of_pair(sim.particles())[2] - before);
 }
 
 }  // namespace
