@@ -70,7 +70,8 @@ std::string table_of(const std::string& kind) {
     return "[system], instead of [particles] and [hamiltonian]; start = [...] sets another start";
   }
   if (kind == "decorator")
-    return "[[integrator.decorator]]; the first wraps the method, each further one wraps the one before";
+    return "[integrator.NAME], or [[integrator.decorator]] with type = \"NAME\"; the first wraps the method, each "
+           "further one wraps the one before";
   if (kind == "monitor") return "[[every]], with every = \"TIME\", steps = N or times = [...]";
   if (kind == "writer") {
     return "[[every]], with every = \"TIME\", steps = N or times = [...] (checkpoint also: wall = \"5 min\")";

@@ -144,7 +144,8 @@ void sort_parts(const Scene& scene, Explanation& e) {
                                counted(static_cast<std::int64_t>(constraint.tied.size()), "time")));
   }
   for (const SceneDecorator& decorator : scene.integrator.decorators) {
-    e.in.push_back("decorator " + decorator.name + keys_text(decorator.effective));
+    e.in.push_back("decorator " + decorator.name + keys_text(decorator.effective) +
+                   (decorator.cost.empty() ? "" : ": " + decorator.cost));
   }
   const std::string unit = scene.units->time == "1" ? "" : " " + std::string(scene.units->time);
   for (const SceneWatch& watch : scene.watches) {

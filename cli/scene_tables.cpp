@@ -311,8 +311,8 @@ std::vector<SceneTable> scene_tables(const Parts& parts) {
                       and_of<MinimizeOptions>({})));
   all.push_back(integrator(parts));
   all.push_back(named("[[integrator.decorator]]",
-                      "Something around the method; the first table is next to it. `noether` "
-                      "itself has none.",
+                      "Something around the method; the first table is next to it. One of each may stand under its own "
+                      "name as well, such as [integrator.projection]: next to the method then.",
                       fields({{"type", "text", "1", "", "a decorator", "\"NAME\""}})));
   all.push_back(every());
   all.push_back(stop());

@@ -84,6 +84,13 @@ template <class Real> void Manifold<Real>::bind(const ParticleSystem<Real>& s, c
     one->bind(s);
     size_ += one->size();
   }
+  if (options_.how == Projection::hamiltonian && size_ == 1) {
+    throw SchemeMismatch(
+        "how = hamiltonian is for pairs with {g, h} other than 0, but {g, g} = 0: moving along the "
+        "flow of " +
+            name(0) + " does not change it; use how = \"orthogonal\"",
+        {.key = "how"});
+  }
   if (options_.direction.empty()) return;
   const Index numbers = particles_ > 0 ? 6 * particles_ : variables_;
   if (static_cast<Index>(options_.direction.size()) == numbers && size_ == 1) return;

@@ -191,9 +191,11 @@ AnyIntegrator<double> integrator_of(const Scene& scene, std::size_t decorators) 
     scene.hamiltonian.check_kicks(hamiltonian.claims().kicks);
     return Composition<AnyHamiltonian<double>>(std::move(hamiltonian), scheme_of(made), made.composition);
   }();
+  if (made.decorators.empty()) return integrator;
+  const ConstraintSet constraints = constraints_of(scene);
   for (const SceneDecorator& decorator : made.decorators) {
     if (decorators-- == 0) break;
-    integrator = decorator.around(std::move(integrator));
+    integrator = decorator.around(std::move(integrator), constraints);
   }
   return integrator;
 }

@@ -63,16 +63,20 @@ class SceneCheck {
   void check_decorators(TableReader& top) const {
     TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
     const auto tables = tables_of(integrator, "decorator");
-    for (std::size_t k = 0; k < tables.size(); ++k) {
+    const std::vector<SceneDecorator>& decorators = scene_.integrator.decorators;
+    const std::size_t named = decorators.size() - tables.size();
+    for (std::size_t k = 0; k < decorators.size(); ++k) {
       ParticleSystem<double> s = scene_.particles;
       s.clock() = clock_of(scene_.integrator);
       try {
         integrator_of(scene_, k + 1).bind(s);
       } catch (const Error& error) {
-        TableReader decorator(context_, *tables[k], "[[integrator.decorator]]",
-                              fmt::format("integrator.decorator.{}", k));
+        const SceneValue& table = k < named ? *integrator.find(decorators[k].name) : *tables[k - named];
+        TableReader decorator(context_, table, k < named ? "[" + decorators[k].path + "]" : "[[integrator.decorator]]",
+                              decorators[k].path);
         decorator.find("type");
-        const bool own = !error.key().empty() && tables[k]->find(error.key()) != nullptr;
+        const bool own = !error.key().empty() && table.find(error.key()) != nullptr;
+        if (!own && k < named) decorator.fail(nullptr, "", error.message());
         decorator.fail(own ? error.key() : "type", error.message());
       }
     }

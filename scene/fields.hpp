@@ -77,9 +77,22 @@ template <class V> SceneValue field_value(const V& value, std::string_view dimen
   }
 }
 
+/// The value of that name. @throws SceneError  if there is none
+template <class E> E choice_of(const TableReader& reader, const std::string& text, std::string_view key) {
+  for (const auto& [value, name] : EnumNames<E>::values) {
+    if (name == text) return value;
+  }
+  reader.fail(key,
+              fmt::format("unknown {} '{}' in {}{}", key, text, reader.what(), did_you_mean(text, choice_names<E>())));
+}
+
 template <class V>
 V read_element(const TableReader& reader, const SceneValue& value, std::string_view key, std::string_view dimension) {
-  if constexpr (std::is_same_v<V, std::string>) {
+  if constexpr (std::is_enum_v<V>) {
+    const std::string* text = value.get<std::string>();
+    if (text == nullptr) reader.wrong_kind(value, key, "a list of texts");
+    return choice_of<V>(reader, *text, key);
+  } else if constexpr (std::is_same_v<V, std::string>) {
     const std::string* text = value.get<std::string>();
     if (text == nullptr) reader.wrong_kind(value, key, "a list of texts");
     return *text;
@@ -103,12 +116,7 @@ V read_element(const TableReader& reader, const SceneValue& value, std::string_v
 template <class E> E read_choice(TableReader& reader, std::string_view key) {
   const SceneValue* given = reader.find(key);  // "2" or 2
   const bool whole = given != nullptr && given->template get<std::int64_t>() != nullptr;
-  const std::string text = whole ? to_text(*given) : reader.text(key);
-  for (const auto& [value, name] : EnumNames<E>::values) {
-    if (name == text) return value;
-  }
-  reader.fail(key,
-              fmt::format("unknown {} '{}' in {}{}", key, text, reader.what(), did_you_mean(text, choice_names<E>())));
+  return choice_of<E>(reader, whole ? to_text(*given) : reader.text(key), key);
 }
 
 /// Reads one field where the scene gives it.
@@ -172,7 +180,11 @@ void require_field(TableReader& reader, const FieldTexts& texts);
 template <class V> void add_field(PartInfo& info, const FieldTexts& texts, const V& value) {
   using Plain = typename optional_value<V>::type;
   std::vector<std::string> choices;
-  if constexpr (std::is_enum_v<Plain>) choices = choice_names<Plain>();
+  if constexpr (std::is_enum_v<Plain>) {
+    choices = choice_names<Plain>();
+  } else if constexpr (requires { EnumNames<typename Plain::value_type>::values; }) {
+    choices = choice_names<typename Plain::value_type>();
+  }
   std::optional<SceneValue> known;
   if constexpr (std::is_same_v<V, Plain>) {
     known = field_value(value, "1", unit_system("reduced"));

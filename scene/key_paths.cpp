@@ -97,6 +97,7 @@ class PathCollector {
     if (key == "thermostat") add_fields(keys, parts_.thermostats(), type);
     if (key == "constraint") add_fields(keys, parts_.constraints(), type);
     if (key == "system") add_fields(keys, parts_.systems(), type);
+    add_fields(keys, parts_.decorators(), key);  // one under its own name
     if (key == "decorator") add_fields(keys, parts_.decorators(), type);
     if (key == "stop") add_fields(keys, parts_.stops(), type);
     if (key == "every") keys.emplace_back("after");
@@ -106,6 +107,7 @@ class PathCollector {
 
   void add_integrator(std::vector<std::string>& keys) const {
     keys.insert(keys.end(), {"method", "step", "start_time", "until", "steps", "exact", "decorator"});
+    for (const auto& kind : parts_.decorators()) keys.push_back(kind.info.name);
     for_each_field<CompositionOptions>([&](const auto& field) { keys.emplace_back(field.name); });
     for (const OptionGroup* group : parts_.method_options()) {
       for (const OptionValue& one : group->values({})) keys.emplace_back(one.name);

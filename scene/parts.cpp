@@ -25,6 +25,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/minimize.hpp"
+#include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
 #include "integrators/systems/heat_line.hpp"
@@ -191,6 +192,7 @@ Parts standard_parts() {
   parts.add_monitor<ShadowHamiltonian<double>>();
   parts.add_stop<Escape>();
   parts.add_stop<Collision>();
+  parts.add_decorator<ProjectionOptions>();
   for (const MethodInfo* method : methods::all()) parts.add_method(*method);
   return parts;
 }

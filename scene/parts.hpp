@@ -125,7 +125,9 @@ struct SceneStop {
 struct SceneDecorator {
   std::string name;
   SceneValue effective;  ///< its table, defaults included
-  std::function<AnyIntegrator<double>(AnyIntegrator<double>)> around;
+  std::function<AnyIntegrator<double>(AnyIntegrator<double>, const ConstraintSet&)> around;  ///< those of the run
+  std::string path = {};  ///< of its table: "integrator.projection", "integrator.decorator.0"
+  std::string cost = {};  ///< that it adds to a step, in words; empty for what is not worth a word
 };
 
 /// A first-order system as a scene asked for it.
@@ -306,8 +308,9 @@ class Parts {
   Parts& add_method(const MethodInfo& method);
 
   /// Makes decorator `D` known by the name it describes itself with: a struct of its parameters for which
-  /// `around(part, I)` (found by its argument) makes an integrator around another one, see integrators/wrapped.hpp. One
-  /// of the same name is replaced.
+  /// `around(part, I)` (found by its argument) makes an integrator around another one, see integrators/wrapped.hpp;
+  /// one that has to know the constraints of the run takes them as well, `around(part, I, ConstraintSet)`. One of the
+  /// same name is replaced.
   template <class D> Parts& add_decorator() {
     static_assert(Described<D>, "a decorator in a scene describes itself: static constexpr auto describe()");
     put(decorators_, DecoratorKind{part_info<D>(), [](TableReader& reader) { return read_decorator<D>(reader); }});
@@ -490,8 +493,13 @@ class Parts {
     read_part(reader, part);
     SceneDecorator made{std::string(part_name<D>()), SceneValue::table(), {}};
     put_fields(reader, part, made.effective);
-    made.around = [part](AnyIntegrator<double> inside) {
-      return AnyIntegrator<double>(around(part, std::move(inside)));
+    if constexpr (requires { part.cost(); }) made.cost = part.cost();
+    made.around = [part](AnyIntegrator<double> inside, const ConstraintSet& constraints) {
+      if constexpr (requires { around(part, std::move(inside), constraints); }) {
+        return AnyIntegrator<double>(around(part, std::move(inside), constraints));
+      } else {
+        return AnyIntegrator<double>(around(part, std::move(inside)));
+      }
     };
     return made;
   }

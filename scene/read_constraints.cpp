@@ -2,6 +2,7 @@
 
 #include "constraints/constraint_solver.hpp"
 #include "constraints/structure_constraints.hpp"
+#include "integrators/projection.hpp"
 #include "scene/read_tied.hpp"
 
 #include <fmt/format.h>
@@ -106,6 +107,18 @@ void leave_out_held_terms(Scene& scene) {
   if (!held.empty()) leave_out_rigid_terms(scene.particles, held);
 }
 
+/// q x p = L_0 binds momenta too: no solver of constraints on positions can hold it.
+void refuse_invariants(const SceneContext& context, const SceneValue& table, const std::string& path) {
+  TableReader reader(context, table, "[[hamiltonian.constraint]]", path);
+  const std::string type = reader.text("type");
+  for (const auto& [invariant, name] : EnumNames<Invariant>::values) {
+    if (invariant == Invariant::constraints || type != name) continue;
+    reader.fail("type", fmt::format("'{0}' binds momenta, and constraints bind positions only; use "
+                                    "[integrator.projection] with onto = [\"{0}\"]",
+                                    name));
+  }
+}
+
 }  // namespace
 
 SceneValue::Array read_constraints(const SceneContext& context, const std::vector<const SceneValue*>& tables,
@@ -115,6 +128,7 @@ SceneValue::Array read_constraints(const SceneContext& context, const std::vecto
   made.constraint_options = read_options(context, tables);
   for (const SceneValue* table : tables) {
     const std::string path = path_of(list.size());
+    refuse_invariants(context, *table, path);
     const auto [kind, type] = kind_of_part(context, *table, path, "constraint", parts.constraints(), {});
     TableReader reader(context, *table, fmt::format("constraint '{}'", type), path);
     reader.find("type");

@@ -6,6 +6,7 @@
 #include "io/text_table.hpp"
 #include "numbers/text.hpp"
 #include "scene/foreign_names.hpp"
+#include "scene/read_decorators.hpp"
 #include "scene/read_options.hpp"
 
 #include <fmt/format.h>
@@ -220,29 +221,6 @@ void read_method_options(TableReader& reader, const Parts& parts, SceneIntegrato
   const bool default_is_zero = !reader.context().of_system;
   if (default_is_zero && !options.atol && info.atol > 0) resolved.atol.reset();
   for (const OptionGroup* group : info.option_groups()) put_options(reader, *group, resolved, effective);
-}
-
-/// What stands around the method, from the inside out.
-void read_decorators(TableReader& integrator, const Parts& parts, SceneIntegrator& made, SceneValue& effective) {
-  const SceneContext& context = integrator.context();
-  SceneValue::Array list;
-  for (const SceneValue* table : tables_of(integrator, "decorator")) {
-    if (parts.decorators().empty()) {
-      integrator.fail(table, "decorator",
-                      "this program has no decorators; a program of your own can add them with `parts.add_decorator`");
-    }
-    const std::string path = fmt::format("integrator.decorator.{}", list.size());
-    const auto [kind, type] = kind_of_part(context, *table, path, "decorator", parts.decorators(), {});
-    TableReader reader(context, *table, fmt::format("decorator '{}'", type), path);
-    reader.find("type");
-    SceneDecorator decorator = kind->read(reader);
-    SceneValue one = SceneValue::table();
-    one.put("type", SceneValue::of(type, reader.line("type")));
-    for (const auto& [key, value] : *decorator.effective.get<SceneValue::Table>()) one.put(key, value);
-    list.push_back(std::move(one));
-    made.decorators.push_back(std::move(decorator));
-  }
-  if (!list.empty()) effective.put("decorator", SceneValue::of(std::move(list)));
 }
 
 /// A step as scenes of these units write it.
@@ -498,6 +476,7 @@ SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& t
   SceneIntegrator made;
   TableReader reader(context, table, "[integrator]", "integrator");
   for (const char* key : {"method", "step", "start_time", "until", "steps", "exact", "decorator"}) reader.find(key);
+  for (const Parts::DecoratorKind& kind : parts.decorators()) reader.find(kind.info.name);
   know_options(reader, parts);
   read_method(reader, parts, made);
   effective.put("method", SceneValue::of(made.method, reader.line("method")));

@@ -127,6 +127,10 @@ std::string to_json(const RunReport& r) {
     const Json contraction = work.measured > 0 ? Json(work.contraction()) : Json();
     members.emplace_back("constraints", Json::object({{"iterations", work.iterations}, {"contraction", contraction}}));
   }
+  if (const ProjectionWork& work = r.evaluations.projection; work.steps > 0) {
+    members.emplace_back("projection",
+                         Json::object({{"steps", work.steps}, {"iterations", work.iterations}, {"mean", work.mean()}}));
+  }
   if (!r.cost.empty()) members.emplace_back("cost", json_of(r.cost));
   if (r.minimized) {
     members.emplace_back("minimized", Json::object({{"force", r.minimized->force}, {"steps", r.minimized->steps}}));
@@ -228,6 +232,10 @@ std::string details_of(const RunReport& r) {
         "constraints: {} in all, {:.3g} for each force evaluation{}\n", counted(work.iterations, "iteration"),
         static_cast<double>(work.iterations) / static_cast<double>(std::max<std::int64_t>(r.evaluations.force, 1)),
         work.measured > 0 ? fmt::format("; one leaves {:.2g} of the violation", work.contraction()) : "");
+  }
+  if (const ProjectionWork& work = r.evaluations.projection; work.steps > 0) {
+    text += fmt::format("projection: {} for {}, {:.3g} for each\n", counted(work.iterations, "iteration"),
+                        counted(work.steps, "step"), work.mean());
   }
   if (const auto& list = r.evaluations.neighbors) {
     text +=

@@ -70,7 +70,11 @@ std::vector<std::string> wanted(const Scene& scene, const Candidate& who, const 
 bool may_go(const Scene& scene, const std::string& key, const std::vector<std::string>& lines) {
   const bool of_splitting = key.starts_with("hamiltonian.") &&
                             scene.hamiltonian.splitting.effective.find(key.substr(key.find('.') + 1)) != nullptr;
-  const bool of_integrator = key.starts_with("integrator.") && !key.starts_with("integrator.decorator.");
+  const auto& decorators = scene.integrator.decorators;
+  const bool of_decorator = std::any_of(decorators.begin(), decorators.end(), [&](const SceneDecorator& one) {
+    return key == one.path || key.starts_with(one.path + ".");
+  });
+  const bool of_integrator = key.starts_with("integrator.") && !of_decorator;
   if (!of_integrator && !of_splitting) return false;
   return std::none_of(lines.begin(), lines.end(), [&](const std::string& line) { return line.starts_with(key + "="); });
 }

@@ -25,6 +25,17 @@ namespace fs = std::filesystem;
 const std::string small_run = two_bodies.substr(0, two_bodies.find("steps = 100")) + "steps = 2000\n" +
                               two_bodies.substr(two_bodies.find("[[every]]"));
 
+/// The same by a method with a past, every step brought back to its energy and angular momentum.
+std::string projected_run() {
+  return two_bodies.substr(0, two_bodies.find("[integrator]")) + R"([integrator]
+method = "adams_bashforth_4"
+step = 0.01
+steps = 2000
+[integrator.projection]
+onto = ["energy", "angular_momentum"]
+)" + two_bodies.substr(two_bodies.find("[[every]]"));
+}
+
 /// 20 000 tracers around two bodies; frames and checkpoints take longer than the steps between.
 const std::string large_run = R"(units = "reduced"
 [particles]
@@ -178,6 +189,11 @@ TEST_CASE("a system's run killed at moments from start to end ends, resumed, as 
 TEST_CASE("a run with lists of times killed at moments from start to end ends, resumed, as one never killed",
           "[cli][resume][kill][times][slow]") {
   die_at_moments(listed_run(), 0, 12);
+}
+
+TEST_CASE("a projected run killed at moments from start to end ends, resumed, as one never killed",
+          "[cli][resume][kill][projection][slow]") {
+  die_at_moments(projected_run(), 20, 8);
 }
 
 TEST_CASE("so they do for hundreds of deaths", "[cli][resume][kill][.][nightly]") {

@@ -14,6 +14,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/digest.hpp"
@@ -260,6 +261,32 @@ std::vector<Twin> decorated_twins() {
   return twins;
 }
 
+/// Projections onto invariants, around a splitting and methods for y' = f: every step is moved.
+std::vector<Twin> projected_twins() {
+  const std::string onto = "[integrator.projection]\nonto=['energy','angular_momentum']\n";
+  std::vector<Twin> twins;
+  for (const Twin& twin : {gravity_twins().back(), wisdom_holman_twins(Coordinates::jacobi).front()}) {
+    for (const Projection how : {Projection::orthogonal, Projection::symmetric}) {
+      Twin one = twin;
+      one.name += ", projected, " + choice_name(how);
+      one.program = projected(one.program, {.onto = {Invariant::energy, Invariant::angular_momentum}, .how = how});
+      one.decorators = onto + "how='" + choice_name(how) + "'\n";
+      twins.push_back(std::move(one));
+    }
+  }
+  for (const char* name : {"rk4", "adams_bashforth_4", "stormer_cowell_12", "bdf_3", "implicit_midpoint"}) {
+    const auto bare = test::classical_over(Gravity{.G = 1, .softening = 0.05}, method(name));
+    twins.push_back({.name = fmt::format("{}, projected", name),
+                     .bodies = test::cloud(7),
+                     .program = projected(bare, {.onto = {Invariant::energy, Invariant::angular_momentum}}),
+                     .step = 0.01,
+                     .hamiltonian = soft_scene,
+                     .method = name,
+                     .decorators = onto});
+  }
+  return twins;
+}
+
 /// A Hamiltonian from outside with an orientation and a spin, under a force from outside with a mesh and a torque.
 std::vector<Twin> turning_twins() {
   ParticleSystem<double> bodies = test::cloud(300);
@@ -355,8 +382,8 @@ std::vector<Twin> exact_energy_twins() {
 }
 
 void check_all_twins(std::size_t stride) {
-  for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), turning_twins(),
-                            rigid_twins(), two_word_twins(), exact_energy_twins(), corrected_twins(),
+  for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), projected_twins(),
+                            turning_twins(), rigid_twins(), two_word_twins(), exact_energy_twins(), corrected_twins(),
                             wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
                             wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);

@@ -69,6 +69,12 @@ struct ProjectsWithoutTime : Flows {
 struct ActionInWords : Flows {
   std::string has_action() const { return "yes"; }
 };
+struct GoesOnFromItself : Flows {
+  void go_on_from(ParticleSystem<double>&) {}
+};
+struct GoesOnFrom : Flows {
+  void goes_on_from(const ParticleSystem<double>&, ParticleSystem<double>&) {}
+};
 
 }  // namespace
 
@@ -86,6 +92,9 @@ TEST_CASE("an optional member of a Hamiltonian or an integrator that is nearly r
   STATIC_REQUIRE(IntegratorMembers<Flows>::has_action);
   STATIC_REQUIRE_FALSE(IntegratorMembers<ActionInWords>::has_action);
   STATIC_REQUIRE_FALSE(IntegratorMembers<VirialOfNothing>::virial);
+  STATIC_REQUIRE(IntegratorMembers<Flows>::go_on_from);
+  STATIC_REQUIRE_FALSE(IntegratorMembers<GoesOnFromItself>::go_on_from);
+  STATIC_REQUIRE_FALSE(IntegratorMembers<GoesOnFrom>::go_on_from);
 }
 
 TEST_CASE("an optional member whose name is misspelt is found", "[engine][members]") {

@@ -47,6 +47,7 @@ const std::vector<Example> all = {
     {"heavy_top", heavy_top::program, Length::quick, Bits::of_this_machine},
     {"henon_heiles", henon_heiles::program, Length::quick},
     {"kepler", kepler::program, Length::quick},
+    {"kepler_projected", kepler_projected::program, Length::quick},
     {"lj_melt", lj_melt::program, Length::slow, Bits::of_this_machine, 100},
     {"oblate_saturn", oblate_saturn::program, Length::slow, Bits::of_this_machine},
     {"outer_solar_system", outer_solar_system::program, Length::nightly, Bits::everywhere, 4000},

@@ -37,6 +37,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/minimize.hpp"
+#include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/velocity_rescaling.hpp"
@@ -157,6 +158,9 @@ namespace examples::henon_heiles {
 }
 namespace examples::kepler {
 #include "examples/kepler/main.cpp"
+}
+namespace examples::kepler_projected {
+#include "examples/kepler_projected/main.cpp"
 }
 namespace examples::lj_melt {
 #include "examples/lj_melt/main.cpp"

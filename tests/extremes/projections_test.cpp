@@ -16,12 +16,12 @@ TEST_CASE("an orbit of e = 0.999 is held on its energy and angular momentum", "[
     if (project) {
       integrator = projected(dop853, {.onto = {Invariant::energy, Invariant::angular_momentum}, .time_scale = 1});
     }
-    Simulation<double> sim(test::kepler_pair(0.999), std::move(integrator));
+    Simulation<double> sim(test::pairs::kepler_pair(0.999), std::move(integrator));
     auto& energy = sim.every(1, Energy());
-    const Outcome outcome = sim.run_until(3 * test::turn);
+    const Outcome outcome = sim.run_until(3 * test::pairs::turn);
     INFO(outcome.message);
     REQUIRE(outcome.ok());
-    return std::pair(energy.worst(), test::error_after_turns(sim.particles(), 0.999));
+    return std::pair(energy.worst(), test::pairs::error_after_turns(sim.particles(), 0.999));
   };
   const auto [bare_energy, bare_error] = run(false);
   const auto [energy, error] = run(true);
@@ -41,7 +41,7 @@ TEST_CASE("a fall without angular momentum is projected, or ends by name", "[ext
                          0.01);
   const Outcome outcome = sim.run(60);  // they meet at pi / (2 sqrt 2) = 1.11
   REQUIRE(outcome.ok());
-  CHECK(std::abs(test::energy_of(sim.particles()) + 0.25) < 1e-15);
+  CHECK(std::abs(test::pairs::energy_of(sim.particles()) + 0.25) < 1e-15);
   CHECK(sim.particles().positions()[0][1] == 0);
   const Outcome end = sim.run(200);
   CHECK((end.ok() || end.kind == Outcome::Kind::solver_failure || end.kind == Outcome::Kind::diverged));

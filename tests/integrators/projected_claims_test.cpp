@@ -44,7 +44,7 @@ Vec3<double> linear_momentum_of_pair(const ParticleSystem<double>& s) {
 
 /// Twenty steps of a pair that drifts and turns about the origin. @return "" or the reason of a refusal
 std::string keeps_its_invariants(const AnyIntegrator<double>& bare, const ProjectionOptions& options) {
-  ParticleSystem<double> start = test::kepler_pair(0.3);
+  ParticleSystem<double> start = test::pairs::kepler_pair(0.3);
   for (Index i = 0; i < 2; ++i) {
     start.velocities().set(i, Vec3<double>(start.velocities()[i]) + Vec3<double>(0.1, -0.2, 0.3));
     start.positions().set(i, Vec3<double>(start.positions()[i]) + Vec3<double>(0.2, 0.1, -0.4));
@@ -61,11 +61,12 @@ std::string keeps_its_invariants(const AnyIntegrator<double>& bare, const Projec
   INFO(outcome.message);
   CHECK(outcome.ok());
   const ParticleSystem<double>& s = sim->particles();
-  if (options.has(Invariant::energy)) CHECK(std::abs(test::energy_of(s) - test::energy_of(start)) < 2e-14);
+  if (options.has(Invariant::energy))
+    CHECK(std::abs(test::pairs::energy_of(s) - test::pairs::energy_of(start)) < 2e-14);
   if (options.has(Invariant::momentum))
     CHECK((linear_momentum_of_pair(s) - linear_momentum_of_pair(start)).norm() < 2e-14);
   if (options.has(Invariant::angular_momentum)) {
-    CHECK((test::angular_momentum_of_pair(s) - test::angular_momentum_of_pair(start)).norm() < 2e-14);
+    CHECK((test::pairs::angular_momentum_of_pair(s) - test::pairs::angular_momentum_of_pair(start)).norm() < 2e-14);
   }
   return "";
 }
@@ -122,13 +123,13 @@ class MixedEuler {
 
 /// The largest error of the energy of the relative motion, which is -1/2, at every fifth step.
 double worst_energy_of_relative_motion(AnyIntegrator<double> integrator, int steps) {
-  const ParticleSystem<double> start = test::kepler_pair();
-  Simulation<double> sim(start, std::move(integrator), test::turn / 500);
-  const double before = test::energy_of(start);
+  const ParticleSystem<double> start = test::pairs::kepler_pair();
+  Simulation<double> sim(start, std::move(integrator), test::pairs::turn / 500);
+  const double before = test::pairs::energy_of(start);
   double worst = 0;
   for (int n = 0; n < steps; n += 5) {
     REQUIRE(sim.run(5).ok());
-    worst = std::max(worst, std::abs(test::energy_of(sim.particles()) / before - 1) / 2);
+    worst = std::max(worst, std::abs(test::pairs::energy_of(sim.particles()) / before - 1) / 2);
   }
   return worst;
 }
@@ -174,7 +175,7 @@ TEST_CASE(
   CHECK(held > 0.4);
   CHECK(held < 0.6);
   const auto mean = [&](AnyIntegrator<double> base) {
-    Simulation<double> sim(test::kepler_pair(), onto(std::move(base)), test::turn / 500);
+    Simulation<double> sim(test::pairs::kepler_pair(), onto(std::move(base)), test::pairs::turn / 500);
     REQUIRE(sim.run(steps).ok());
     return sim.evaluations().projection.mean();
   };

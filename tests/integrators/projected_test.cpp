@@ -26,7 +26,6 @@ namespace {
 
 using Catch::Matchers::Contains;
 using Catch::Matchers::WithinRel;
-using test::turn;
 
 using Onto = std::vector<Invariant>;
 const Onto to_energy = {Invariant::energy}, to_momentum = {Invariant::momentum},
@@ -50,15 +49,16 @@ struct PairEnd {
 };
 
 PairEnd pair_end(AnyIntegrator<double> integrator, int steps_a_turn, int turns = 10,
-                 const ParticleSystem<double>& start = test::kepler_pair()) {
-  Simulation<double> sim(start, std::move(integrator), turn / steps_a_turn);
+                 const ParticleSystem<double>& start = test::pairs::kepler_pair()) {
+  Simulation<double> sim(start, std::move(integrator), test::pairs::turn / steps_a_turn);
   const Outcome outcome = sim.run(steps_a_turn * turns);
   INFO(outcome.message);
   REQUIRE(outcome.ok());
   const ParticleSystem<double>& s = sim.particles();
   const double mass = 0.75 * 0.25;  // of the relative motion, whose figures are published
-  return {s, test::error_after_turns(s), std::abs(test::energy_of(s) - test::energy_of(start)) / mass,
-          (test::angular_momentum_of_pair(s) - test::angular_momentum_of_pair(start)).norm() / mass,
+  return {s, test::pairs::error_after_turns(s),
+          std::abs(test::pairs::energy_of(s) - test::pairs::energy_of(start)) / mass,
+          (test::pairs::angular_momentum_of_pair(s) - test::pairs::angular_momentum_of_pair(start)).norm() / mass,
           sim.evaluations().projection.mean()};
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("figures of projected Kepler orbits are those of an independent progra
 
 TEST_CASE("masses weigh, so that a pair is projected as its relative motion is", "[integrators][projected]") {
   const auto end = [](double m, ProjectionNorm norm) {
-    return pair_end(pair_held("rk4", {.onto = to_both, .norm = norm}), 200, 10, test::kepler_pair(0.6, m));
+    return pair_end(pair_held("rk4", {.onto = to_both, .norm = norm}), 200, 10, test::pairs::kepler_pair(0.6, m));
   };
   const auto center_moves = [](const ParticleSystem<double>& s) {
     const Vec3<double> x = s.positions()[0], y = s.positions()[1];
@@ -120,11 +120,11 @@ TEST_CASE("a symmetric projection is undone by steps back", "[integrators][proje
   CHECK(std::abs(end.iterations - 6.7) < 1);
   CHECK(end.energy < 1e-14);
   const auto there_and_back = [](const ProjectionOptions& options) {
-    Simulation<double> sim(test::kepler_pair(), pair_held("verlet", options), turn / 200);
+    Simulation<double> sim(test::pairs::kepler_pair(), pair_held("verlet", options), test::pairs::turn / 200);
     REQUIRE(sim.run(200).ok());
-    sim.change_step(-turn / 200);
+    sim.change_step(-test::pairs::turn / 200);
     REQUIRE(sim.run(200).ok());
-    return test::error_after_turns(sim.particles());
+    return test::pairs::error_after_turns(sim.particles());
   };
   CHECK(there_and_back(symmetric) < 1e-14);
   CHECK(there_and_back({.onto = to_both}) > 1e-9);
@@ -134,9 +134,10 @@ TEST_CASE("a state that is there already keeps its bits", "[integrators][project
   for (const char* name : {"verlet", "yoshida_4", "implicit_midpoint", "gauss_3"}) {
     for (const Projection how : {Projection::orthogonal, Projection::symmetric}) {
       CAPTURE(name, static_cast<int>(how));
-      Simulation<double> bare(test::kepler_pair(), pair_by(name), turn / 200),
-          sim(test::kepler_pair(),
-              pair_held(name, {.onto = {Invariant::momentum, Invariant::angular_momentum}, .how = how}), turn / 200);
+      Simulation<double> bare(test::pairs::kepler_pair(), pair_by(name), test::pairs::turn / 200),
+          sim(test::pairs::kepler_pair(),
+              pair_held(name, {.onto = {Invariant::momentum, Invariant::angular_momentum}, .how = how}),
+              test::pairs::turn / 200);
       REQUIRE(bare.run(200).ok());
       REQUIRE(sim.run(200).ok());
       CHECK(test::same_bits(sim.particles(), bare.particles()));
@@ -147,26 +148,26 @@ TEST_CASE("a state that is there already keeps its bits", "[integrators][project
 }
 
 TEST_CASE("a projection along velocities rescales them", "[integrators][projected]") {
-  Simulation<double> bare(test::kepler_pair(), pair_by("rk4"), 0.1),
-      sim(test::kepler_pair(),
+  Simulation<double> bare(test::pairs::kepler_pair(), pair_by("rk4"), 0.1),
+      sim(test::pairs::kepler_pair(),
           pair_held("rk4", {.onto = to_energy, .how = Projection::oblique, .moves = Moves::velocities}), 0.1);
   REQUIRE(bare.run(1).ok());
   REQUIRE(sim.run(1).ok());
   const Vec3<double> v = bare.particles().velocities()[1], w = sim.particles().velocities()[1];
-  CHECK(test::apart(bare.particles()) == test::apart(sim.particles()));
+  CHECK(test::pairs::apart(bare.particles()) == test::pairs::apart(sim.particles()));
   CHECK(cross(v, w).norm() < 1e-15);
   CHECK(w != v);
-  CHECK(std::abs(test::energy_of(sim.particles()) - test::energy_of(test::kepler_pair())) < 1e-15);
+  CHECK(std::abs(test::pairs::energy_of(sim.particles()) - test::pairs::energy_of(test::pairs::kepler_pair())) < 1e-15);
   // A direction of one's own: along the radius alone.
   std::vector<double> direction(12, 0);
   direction[0] = -0.25;
   direction[1] = 0.75;
-  Simulation<double> along(test::kepler_pair(),
+  Simulation<double> along(test::pairs::kepler_pair(),
                            pair_held("rk4", {.onto = to_energy, .how = Projection::oblique, .direction = direction}),
                            0.1);
   REQUIRE(along.run(1).ok());
-  CHECK(test::apart(along.particles())[1] == test::apart(bare.particles())[1]);
-  CHECK(test::apart(along.particles())[0] != test::apart(bare.particles())[0]);
+  CHECK(test::pairs::apart(along.particles())[1] == test::pairs::apart(bare.particles())[1]);
+  CHECK(test::pairs::apart(along.particles())[0] != test::pairs::apart(bare.particles())[0]);
   CHECK(along.particles().velocities()[1] == bare.particles().velocities()[1]);
 }
 
@@ -177,8 +178,8 @@ TEST_CASE("what every method remembers goes on from the moved state", "[integrat
     double order;
     int steps;
   };
-  const double until = 0.7 * turn;
-  const ParticleSystem<double> start = test::kepler_pair(0.3);
+  const double until = 0.7 * test::pairs::turn;
+  const ParticleSystem<double> start = test::pairs::kepler_pair(0.3);
   Simulation<double> exact(start, test::classical_over(Gravity{}, method("gauss_radau_15")));
   REQUIRE(exact.run_until(until).ok());
   for (const Way& way : {Way{"dormand_prince_5", 5, 60},
@@ -191,8 +192,8 @@ TEST_CASE("what every method remembers goes on from the moved state", "[integrat
       const ProjectionOptions options{.onto = project ? to_energy : Onto{}};
       Simulation<double> sim(start, pair_held(way.method, options), until / steps);
       REQUIRE(sim.run(steps).ok());
-      if (project) CHECK(std::abs(test::energy_of(sim.particles()) - test::energy_of(start)) < 1e-14);
-      return (test::apart(sim.particles()) - test::apart(exact.particles())).norm();
+      if (project) CHECK(std::abs(test::pairs::energy_of(sim.particles()) - test::pairs::energy_of(start)) < 1e-14);
+      return (test::pairs::apart(sim.particles()) - test::pairs::apart(exact.particles())).norm();
     };
     const double longer = error(way.steps, true), shorter = error(way.steps * 3 / 2, true);
     const double slope = std::log(longer / shorter) / std::log(1.5);
@@ -212,9 +213,9 @@ TEST_CASE("adaptive methods keep the lengths of their steps, and states between 
     const auto run = [&](bool project, double interval) {
       AnyIntegrator<double> integrator = test::classical_over(Gravity{}, method(name, {.rtol = rtol}));
       if (project) integrator = projected(std::move(integrator), {.onto = to_both});
-      Simulation<double> sim(test::kepler_pair(), std::move(integrator), Clock<double>::free(0));
+      Simulation<double> sim(test::pairs::kepler_pair(), std::move(integrator), Clock<double>::free(0));
       Energy* energy = interval > 0 ? &sim.every_time(interval, Energy()) : nullptr;
-      REQUIRE(sim.run_until(turn).ok());
+      REQUIRE(sim.run_until(test::pairs::turn).ok());
       return std::tuple(sim.step(), energy != nullptr ? energy->worst() : 0, sim.particles());
     };
     const auto [steps, worst, end] = run(true, 0.037);
@@ -223,6 +224,23 @@ TEST_CASE("adaptive methods keep the lengths of their steps, and states between 
     if (text != "gauss_radau_15") CHECK(bare_worst > 1e-11);
     CHECK(steps < 1.3 * static_cast<double>(bare_steps) + 5);
     CHECK(test::same_bits(std::get<2>(run(true, 0)), end));  // whatever looked on
+  }
+}
+
+TEST_CASE("states between steps of one length are projected, and the run does not know of it",
+          "[integrators][projected]") {
+  for (const char* name : {"dormand_prince_5", "dop853", "rodas_4", "encke_gauss_8", "wide_gauss_8"}) {
+    CAPTURE(name);
+    const auto run = [&](const ProjectionOptions& options, bool look) {
+      Simulation<double> sim(test::pairs::kepler_pair(), pair_held(name, options), test::pairs::turn / 50);
+      Energy* energy = look ? &sim.every_time(0.037, Energy()) : nullptr;
+      REQUIRE(sim.run(50).ok());
+      return std::pair(look ? energy->worst() : 0, sim.particles());
+    };
+    const auto [worst, end] = run({.onto = to_both}, true);
+    CHECK(worst < 1e-13);
+    CHECK(test::same_bits(run({.onto = to_both}, false).second, end));
+    if (pair_by(name).claims().order < 10) CHECK(run({}, true).first > 1e-8);
   }
 }
 
@@ -280,16 +298,18 @@ TEST_CASE("an invariant of one's own is held, of particles and of first-order sy
     const double masses[] = {0.75, 0.25};
     return LaplaceY{}(ParticleState<double>(y, masses));
   };
-  Simulation<double> sim(test::kepler_pair(), projected(pair_by("rk4"), {.onto = to_both}, LaplaceY{}), turn / 100);
+  Simulation<double> sim(test::pairs::kepler_pair(), projected(pair_by("rk4"), {.onto = to_both}, LaplaceY{}),
+                         test::pairs::turn / 100);
   const Outcome outcome = sim.run(300);
   INFO(outcome.message);
   REQUIRE(outcome.ok());
   CHECK(std::abs(laplace(sim.particles())) < 1e-13);
-  CHECK(std::abs(test::energy_of(sim.particles()) - test::energy_of(test::kepler_pair())) < 1e-14);
+  CHECK(std::abs(test::pairs::energy_of(sim.particles()) - test::pairs::energy_of(test::pairs::kepler_pair())) < 1e-14);
 
-  Simulation<double> both(test::kepler_pair(), projected(pair_by("rk4"), {}, EnergyAndTurn{}), turn / 200);
+  Simulation<double> both(test::pairs::kepler_pair(), projected(pair_by("rk4"), {}, EnergyAndTurn{}),
+                          test::pairs::turn / 200);
   REQUIRE(both.run(2000).ok());
-  CHECK_THAT(test::error_after_turns(both.particles()), WithinRel(1.914e-5, 0.02));
+  CHECK_THAT(test::pairs::error_after_turns(both.particles()), WithinRel(1.914e-5, 0.02));
 
   for (const char* name : {"heun", "rk4", "bdf_2"}) {
     CAPTURE(name);
@@ -303,14 +323,14 @@ TEST_CASE("an invariant of one's own is held, of particles and of first-order sy
 }
 
 TEST_CASE("in 113 bits rounding is that of 113 bits", "[integrators][projected]") {
-  const ParticleSystem<Quad> start = test::kepler_pair<Quad>();
+  const ParticleSystem<Quad> start = test::pairs::kepler_pair<Quad>();
   AnyIntegrator<Quad> rk4 = test::classical_over(test::field_of<Quad>(Gravity{}), method("rk4"));
-  Simulation<Quad> sim(start, projected(std::move(rk4), {.onto = to_both}), turn / 200);
+  Simulation<Quad> sim(start, projected(std::move(rk4), {.onto = to_both}), test::pairs::turn / 200);
   REQUIRE(sim.run(200).ok());
-  CHECK(abs(test::energy_of(sim.particles()) - test::energy_of(start)) < Quad(1e-32));
-  CHECK(norm2(Vec3<Quad>(test::angular_momentum_of_pair(sim.particles()) - test::angular_momentum_of_pair(start))) <
-        Quad(1e-64));
-  CHECK(test::error_after_turns(sim.particles()) < 1e-4);
+  CHECK(abs(test::pairs::energy_of(sim.particles()) - test::pairs::energy_of(start)) < Quad(1e-32));
+  CHECK(norm2(Vec3<Quad>(test::pairs::angular_momentum_of_pair(sim.particles()) -
+                         test::pairs::angular_momentum_of_pair(start))) < Quad(1e-64));
+  CHECK(test::pairs::error_after_turns(sim.particles()) < 1e-4);
 }
 
 TEST_CASE("a projection says what it keeps and what it destroys", "[integrators][projected]") {
@@ -320,7 +340,7 @@ TEST_CASE("a projection says what it keeps and what it destroys", "[integrators]
   CHECK((both.energy_exact && both.keeps_angular_momentum));
   CHECK(pair_held("verlet", {.onto = to_energy, .how = Projection::symmetric}).claims().reversible);
   CHECK_FALSE(pair_held("rk4", {.onto = to_energy, .how = Projection::symmetric}).claims().reversible);
-  Simulation<double> sim(test::kepler_pair(), pair_held("verlet", {.onto = to_energy}), 0.1);
+  Simulation<double> sim(test::pairs::kepler_pair(), pair_held("verlet", {.onto = to_energy}), 0.1);
   CHECK_THROWS_WITH(sim.every(1, ShadowHamiltonian<double>(std::vector<std::int64_t>{4})),
                     Contains("a projection moves the state after every step, so the motion has no action"));
 }
@@ -328,7 +348,7 @@ TEST_CASE("a projection says what it keeps and what it destroys", "[integrators]
 TEST_CASE("a state that cannot be reached ends the run by name", "[integrators][projected]") {
   // A particle that rolls up a hill loses all its velocity before it is there.
   Simulation<double> sim(
-      test::kepler_pair(0.9),
+      test::pairs::kepler_pair(0.9),
       pair_held("euler", {.onto = to_energy, .how = Projection::oblique, .moves = Moves::velocities}), 0.5);
   const Outcome outcome = sim.run(200);
   CHECK(outcome.kind == Outcome::Kind::solver_failure);
@@ -339,7 +359,7 @@ TEST_CASE("a state that cannot be reached ends the run by name", "[integrators][
 TEST_CASE("what cannot be projected onto is refused in one line", "[integrators][projected]") {
   const auto refusal = [](AnyIntegrator<double> integrator, const ProjectionOptions& options) {
     try {
-      Simulation<double> sim(test::kepler_pair(), projected(std::move(integrator), options), 0.1);
+      Simulation<double> sim(test::pairs::kepler_pair(), projected(std::move(integrator), options), 0.1);
     } catch (const Error& error) {
       return error.message();
     }
@@ -351,6 +371,9 @@ TEST_CASE("what cannot be projected onto is refused in one line", "[integrators]
   CHECK_THAT(refusal(pair_by("verlet"), {.onto = to_angular, .how = Projection::hamiltonian}),
              Contains("{J_z, J_z} = 0"));
   CHECK_THAT(refusal(pair_by("verlet"), {.onto = to_energy, .how = Projection::hamiltonian}), Contains("{H, H} = 0"));
+  CHECK_THROWS_WITH(Simulation<double>(test::pairs::kepler_pair(),
+                                       projected(pair_by("verlet"), {.how = Projection::hamiltonian}, LaplaceY{}), 0.1),
+                    Contains("{g, g} = 0"));
   CHECK_THAT(refusal(pair_by("verlet"), {.onto = to_energy, .how = Projection::oblique}), Contains("has no direction"));
   CHECK_THAT(refusal(pair_by("adams_bashforth_4"), {.onto = to_energy, .how = Projection::symmetric}),
              Contains("goes on from earlier states"));

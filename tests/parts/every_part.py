@@ -114,6 +114,7 @@ def scene_text(case, cadences, method=None, steps=scenes.STEPS):
         text += f'[integrator]\nmethod = "{method}"\nrtol = 1e-6\nsteps = {steps}\n'
     else:
         text += f'[integrator]\nmethod = "{case.method}"\nstep = {json.dumps(case.time())}\nsteps = {steps}\n'
+    text += case.around
     watched = [("energy", look)] if case.energy else []
     watched += [("trajectory", frame), ("checkpoint", save)]
     for kind, cadence in watched:

@@ -24,6 +24,7 @@ class Case:
     step: float = 0.02
     watch: str = ""
     stop: str = ""
+    around: str = ""                             # what stands around the method, as tables of [integrator]
     flow: str = "dop853"                         # the method for y' = f that chooses its steps
     rivals: tuple = RIVALS                       # methods of `compare` and `advise`; the first is that of `stability`
     energy: bool = True
@@ -233,6 +234,10 @@ THERMOSTATS = {
                                "temperature = 1\nrelaxation_time = 0.5\nseed = 7\n"),
 }
 
+DECORATORS = {
+    "projection": Case(PLANETS, forces(GRAVITY), around='[integrator.projection]\nonto = ["energy", "angular_momentum"]\n'),
+}
+
 # A molecule of four that is no plane, under a weak spring: a chain whose bonds and ends of angles are held.
 BRANCH_FILE = """four beads
 
@@ -408,7 +413,7 @@ KINDS = {
     "constraints": (CONSTRAINTS, "Constraints"),
     "solvers": (SOLVERS, "Solvers of constraints"),
     "systems": (SYSTEMS, "First-order systems"),
-    "decorators": ({}, "Decorators of integrators"),
+    "decorators": (DECORATORS, "Decorators of integrators"),
     "monitors": (MONITORS, "Monitors, writers and stops"),
     "builders": (BUILDERS, "Builders of particles"),
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace noether::test {
+namespace noether::test::pairs {
 
 /// The period of the orbit.
 inline constexpr double turn = 2 * std::numbers::pi;
@@ -47,4 +47,4 @@ template <class Real> Vec3<Real> angular_momentum_of_pair(const ParticleSystem<R
   return sum;
 }
 
-}  // namespace noether::test
+}  // namespace noether::test::pairs
