@@ -69,16 +69,16 @@ TEST_CASE("meshes that cannot be followed are refused where they are wrong", "[s
         "m.msh:2: the mesh has version 3; 2.2 and 4.1 are supported: give Mesh.MshFileVersion = 4.1 to Gmsh");
   CHECK(mesh_refusal("$Nodes", "$Points") == "m.msh: there is no $Nodes, as a mesh of Gmsh has");
   CHECK(mesh_refusal("6 4 2 2 2 9 3 2 4", "6 11 2 2 2 9 3 2 4 1 2 3 4 1 2") ==
-        "m.msh:27: this element is a tetrahedron of second order; tetrahedra of first order are expected, with "
+        "m.msh:26: this element is a tetrahedron of second order; tetrahedra of first order are expected, with "
         "triangles");
   CHECK(mesh_refusal("6 4 2 2 2 9 3 2 4", "6 4 2 2 2 4 3 2 1") ==
-        "m.msh:27: this tetrahedron is given in line 26 already; put each into one physical volume");
+        "m.msh:26: this tetrahedron is given in line 25 already; put each into one physical volume");
   CHECK(mesh_refusal("6 4 2 2 2 9 3 2 4", "6 4 2 2 2 8 3 2 4") ==
-        "m.msh:27: node 8 of this element is not in the mesh");
+        "m.msh:26: node 8 of this element is not in the mesh");
   CHECK(mesh_refusal("9 1 1 1", "9 0.5 0.5 0") ==
         "m.msh: element 1 of the mesh is flat: its volume is 0 where its longest edge is 1.41421; take it out or make "
         "the mesh anew");
-  CHECK(mesh_refusal("6\n1 15", "7\n1 15") == "m.msh:28: the section ends where an element is expected");
+  CHECK(mesh_refusal("6\n1 15", "7\n1 15") == "m.msh:27: the section ends where an element is expected");
   CHECK(mesh_refusal("2 1 0 0", "1 1 0 0") == "m.msh:13: node 1 is given twice");
   CHECK(mesh_refusal("2 1 0 0", "2 1 0 x").starts_with("m.msh:13: "));
   CHECK(mesh_refusal("2.2", "2.2", {.units = &unit_system("reduced")}) ==
