@@ -43,6 +43,7 @@
 #include "integrators/langevin.hpp"
 #include "integrators/methods/newmark.hpp"
 #include "integrators/minimize.hpp"
+#include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
 #include "integrators/systems/heat_line.hpp"

@@ -131,6 +131,10 @@ Served served_by(const MethodClaims& claims) {
     return {"gravity of point masses",
             "it supports gravity without softening, and beside it forces that depend on positions and time"};
   }
+  if (claims.conservative_only) {
+    if (claims.second_order_only) return {"q'' = -M^-1 grad U(q)", "it supports forces that know their secants"};
+    return {"y' = J grad H(y)", "it supports forces of an energy of positions alone, and Hamiltonian systems"};
+  }
   if (claims.positions_only) {
     return {"q'' = a(t, q)",
             "it supports forces that depend on positions and time, but not on velocities, and no first-order system"};

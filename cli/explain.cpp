@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/explain_bodies.hpp"
+#include "cli/explain_kept.hpp"
 
 #include "integrators/composition.hpp"
 #include "integrators/stiffness.hpp"
@@ -44,6 +45,7 @@ struct Explanation {
   std::optional<KeplerSteps> kepler;            ///< of gravity
   Index variables = 0;                          ///< of a system without particles
   std::optional<NeighborStatistics> neighbors;  ///< of the first step
+  std::string kept;                             ///< of energy, momentum and angular momentum
   std::string small_box;                        ///< what is done where it is smaller than twice the range
   std::optional<Stiffness> stiffness;           ///< at the start
   std::optional<StiffnessAlong> along;          ///< of a system whose run has an end
@@ -269,6 +271,7 @@ Explanation explained(const Scene& scene) {
   count_evaluations(scene, e);
   e.kepler = kepler_steps(scene);
   e.small_box = small_box_of(scene);
+  e.kept = kept_text(scene, integrator.claims());
   measure_neighbors(integrator, s, e);
   return e;
 }
@@ -413,6 +416,7 @@ void print_text(const Scene& scene, const Explanation& e, bool all) {
         "exact, energies are doubles\n",
         force.name);
   }
+  if (!e.kept.empty()) fmt::print("{}\n", e.kept);
   if (!e.small_box.empty()) fmt::print("{}\n", e.small_box);
   if (const std::string epoch = epoch_of(scene.effective); !epoch.empty()) {
     const double start = scene.integrator.start;

@@ -74,7 +74,7 @@ SceneTable particles() {
            "choice",
            "1",
            "",
-           "\"rigid\" makes each molecule of a structure one rigid body",
+           "\"rigid\" makes each molecule of a structure, or of run.h5, one rigid body",
            "",
            {"rigid"}},
           {"frame",

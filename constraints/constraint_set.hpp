@@ -4,6 +4,7 @@
 #include "constraints/constraint_group.hpp"
 #include "constraints/constraint_method.hpp"
 #include "constraints/rigid_bar.hpp"
+#include "engine/equations.hpp"
 #include "engine/particle_system.hpp"
 
 #include <memory>
@@ -120,6 +121,8 @@ class ConstraintSet {
   double tolerance() const { return options_.violation(); }
   bool keeps_momentum() const;
   bool keeps_angular_momentum() const;
+  /// g = 0 and dg/dt = 0 as equations of a state, for projections.
+  template <class Real> std::unique_ptr<Equations<Real>> as_equations() const;
   /// Everything in text: a run goes on with the same set only.
   std::string signature() const;
 

@@ -43,6 +43,14 @@ struct ConstraintWork {
   double contraction() const { return measured > 0 ? std::exp(log / static_cast<double>(measured)) : 0; }
 };
 
+/// What projections have done so far.
+struct ProjectionWork {
+  std::int64_t steps = 0;       ///< that were looked at
+  std::int64_t iterations = 0;  ///< for all of them together; a state that is near enough takes none
+
+  double mean() const { return steps > 0 ? static_cast<double>(iterations) / static_cast<double>(steps) : 0; }
+};
+
 /// Work done so far, counted where it is done.
 struct Evaluations {
   std::int64_t force = 0, kepler = 0, jacobian = 0;
@@ -51,6 +59,7 @@ struct Evaluations {
   std::int64_t unsettled = 0;                        ///< steps that have errors above those that their method is for
   std::optional<NeighborStatistics> neighbors = {};  ///< of this process, where some force has a range
   std::optional<Encounter> encounter = {};           ///< the closest one that the splitting should not have met
+  ProjectionWork projection = {};
 };
 
 /// What a split Hamiltonian says of its parts; tests verify it, `Composition` refuses by it.
@@ -114,6 +123,13 @@ concept SplitHamiltonian = requires(H& h, const H& c, ParticleSystem<typename H:
   { c.failure() } -> std::convertible_to<const std::optional<Failure>&>;
 };
 
+/// What a method goes on from beside the state, where that is moved between two steps, as projections do.
+enum class Memory : std::uint8_t {
+  none,       ///< nothing: its steps are maps of the state, to rounding
+  history,    ///< earlier states, which stay; what it keeps of the last one becomes that of the moved one
+  immovable,  ///< what it remembers cannot be moved
+};
+
 /// What an integrator says of the runs it makes.
 struct IntegratorClaims {
   std::string method;       ///< name of the scheme or method
@@ -131,6 +147,8 @@ struct IntegratorClaims {
   bool time_dependent = false;
   bool keeps_momentum = true;
   bool keeps_angular_momentum = true;
+  bool angular_momentum = true;  ///< the equations of motion keep it, whatever the method does
+  Memory memory = Memory::none;
   Index constraints = 0;            ///< degrees of freedom they take
   double constraint_tolerance = 0;  ///< relative violation that is left on purpose; 0: rounding
   std::int64_t steps_at_once = 1;   ///< where nobody looks, so many steps cost less each than one
@@ -164,6 +182,9 @@ struct Advance {
 /// `advance`, and the action increments of its flows, the integral of p dq - H dt, added to `action`. Its `settle` then
 /// returns the action of the flows that complete the copy, correctors left out, where `wanted.action` asks for it. One
 /// that gives the action at times only says so by `has_action()`.
+///
+/// It may offer `go_on_from(now, raw)`: the state was moved a little at a whole step, and the run goes on from `now`,
+/// which is settled; lengths of steps and histories stay. Others are bound anew, as after an edit.
 template <class I>
 concept Integrator = requires(I& i, const I& c, ParticleSystem<typename I::real>& s,
                               const ParticleSystem<typename I::real>& raw, const Span& span, Request wanted,

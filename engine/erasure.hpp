@@ -90,6 +90,7 @@ NOETHER_FINDS_MEMBER(set_neighbor_options, set_neighbour_options, set_neigbor_op
 NOETHER_FINDS_MEMBER(has_action, has_aciton, has_actoin, has_actions, has_acton, have_action, hsa_action)
 NOETHER_FINDS_MEMBER(advance_with_action, advance_with_actions, advance_with_acton, advance_with_actoin,
                      advance_with_aciton, advances_with_action, advance_whit_action)
+NOETHER_FINDS_MEMBER(go_on_from, goes_on_from, go_on_form, go_on, goon_from, go_from, go_on_fron)
 NOETHER_FINDS_MEMBER(wide_energy, wide_enregy, wide_enery, wide_energies, wide_enegry, wide_engery, wied_energy)
 
 template <class T>
@@ -226,6 +227,30 @@ Real settle(I& integrator, const ParticleSystem<Real>& raw, ParticleSystem<Real>
   return Real(0);
 }
 
+template <class I>
+concept GoesOnFrom = requires(I& integrator, const ParticleSystem<typename I::real>& now,
+                              ParticleSystem<typename I::real>& raw) {
+  integrator.go_on_from(now, raw);
+};
+/// Goes on from another state of the particles at a whole step, as after an edit: the method begins anew.
+/// @param now  settled, then changed
+template <class I, class Real>
+void begin_from(I& integrator, const ParticleSystem<Real>& now, ParticleSystem<Real>& raw) {
+  raw = now;
+  raw.phase() = Phase{};
+  raw.keep_low_words(false);
+  integrator.bind(raw);
+}
+/// Goes on from a state that was moved a little; one that does not know how begins anew.
+template <class I, class Real>
+void go_on_from(I& integrator, const ParticleSystem<Real>& now, ParticleSystem<Real>& raw) {
+  if constexpr (GoesOnFrom<I>) {
+    integrator.go_on_from(now, raw);
+  } else {
+    begin_from(integrator, now, raw);
+  }
+}
+
 template <class R, class C, class... A> std::type_identity<C> written_in(R (C::*)(A...));
 template <class R, class C, class... A> std::type_identity<C> written_in(R (C::*)(A...) const);
 
@@ -261,6 +286,7 @@ template <class I> struct IntegratorMembers {
   static constexpr bool advance_with_action =
       !misspells_advance_with_action<I>() && (!finds_advance_with_action<I>() || GivesAction<I>);
   static constexpr bool wide_energy = !misspells_wide_energy<I>() && (!finds_wide_energy<I>() || GivesWideEnergy<I>);
+  static constexpr bool go_on_from = !misspells_go_on_from<I>() && (!finds_go_on_from<I>() || GoesOnFrom<I>);
 };
 
 /// How an integrator answers where it need not have a member of this name.
@@ -277,6 +303,10 @@ struct IntegratorAnswers {
   }
   template <class I, class Real> static auto wide_energy(I& i, const ParticleSystem<Real>& s) {
     return wide_energy_of(i, s);
+  }
+  template <class I, class Real>
+  static void go_on_from(I& i, const ParticleSystem<Real>& now, ParticleSystem<Real>& raw) {
+    detail::go_on_from(i, now, raw);
   }
   template <class I, class Real> static auto virial(I& i, const ParticleSystem<Real>& s) { return virial_of(i, s); }
   template <class I> static void save(const I& i, SavedState& saved, const std::string& prefix) {
@@ -301,6 +331,7 @@ struct IntegratorAnswers {
            (const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted,                               \
             const std::optional<double>& at, bool corrected),                                                         \
            raw, out, wanted, at, corrected)                                                                           \
+  ANSWERED(void, go_on_from, (const ParticleSystem<Real>& now, ParticleSystem<Real>& raw), now, raw)                  \
   OWN(EnergyTerms<Real>, energy, (const ParticleSystem<Real>& s), s)                                                  \
   ANSWERED(std::optional<EnergyTerms<Quad>>, wide_energy, (const ParticleSystem<Real>& s), s)                         \
   ANSWERED(std::optional<Mat3<Real>>, virial, (const ParticleSystem<Real>& s), s)                                     \
@@ -329,6 +360,9 @@ template <class I> struct IntegratorModel final : IntegratorBase<typename I::rea
   static_assert(Members::wide_energy,
                 "an integrator has `EnergyTerms<Quad> wide_energy(const ParticleSystem<Real>&)`, "
                 "which may be optional, or no member of that name or nearly that name");
+  static_assert(Members::go_on_from,
+                "an integrator has `void go_on_from(const ParticleSystem<Real>&, ParticleSystem<Real>&)`, or no member "
+                "of that name or nearly that name");
   static_assert(action_follows<I>(),
                 "a wrapper of an integrator that has its own `advance` needs its own `advance_with_action` too, or a "
                 "`has_action` that returns false");

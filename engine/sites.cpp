@@ -79,6 +79,12 @@ Topology topology_of_sites(const Topology* given, const Bodies& bodies, Index n,
   return t;
 }
 
+/// Whether the mass of a body, in some lane, is not that of its sites.
+template <class Real> bool differs(const Real& mass, double of_sites) {
+  using std::fabs;
+  return any(fabs(mass - Real(of_sites)) > Real(1e-12 * of_sites));
+}
+
 /// Each of `count` numbers so many times in a row.
 void repeat(const std::int32_t* from, Index count, Index times, std::int32_t* to) {
   if (times == 3) {  // water
@@ -119,7 +125,7 @@ template <class Real> Sites<Real>::Sites(const ParticleSystem<Real>& s, bool pai
     } else {
       double mass = 0;
       for (const BodySite& site : kind->sites) mass += site.mass;
-      if (std::fabs(static_cast<double>(s.masses()[i]) - mass) > 1e-12 * mass) {
+      if (differs(s.masses()[i], mass)) {
         throw Error(fmt::format("the mass of body '{}' is not that of its sites; change its sites too", s.name(i)));
       }
       for (const BodySite& site : kind->sites) {
@@ -217,5 +223,8 @@ void Sites<Real>::gather(const VectorColumn<Real>& a, const Mat3<Real>& virial, 
 
 template class Sites<double>;
 template class Sites<Quad>;
+template class Sites<Pack>;
+template class Sites<Dual<double, 1>>;
+template class Sites<Dual<Quad, 1>>;
 
 }  // namespace noether

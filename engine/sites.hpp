@@ -3,6 +3,7 @@
 
 #include "engine/bodies.hpp"
 #include "engine/force_sink.hpp"
+#include "numbers/pack.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -73,5 +74,8 @@ template <class Real> class KeptSites {
 
 extern template class Sites<double>;
 extern template class Sites<Quad>;
+extern template class Sites<Pack>;
+extern template class Sites<Dual<double, 1>>;
+extern template class Sites<Dual<Quad, 1>>;
 
 }  // namespace noether

@@ -140,7 +140,8 @@ void GravityOfBodies::refuse_one_site(const std::string& body) {
 }
 
 template <class Real>
-  requires(std::is_same_v<Real, double> || std::is_same_v<Real, Quad>)
+  requires(std::is_same_v<Real, double> || std::is_same_v<Real, Quad> || std::is_same_v<Real, Pack> ||
+           std::is_same_v<Real, Dual<double, 1>> || std::is_same_v<Real, Dual<Quad, 1>>)
 void GravityOfBodies::add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
   const Real g(G ? *G : s.units().G);
   auto& here = out.workspace().template get<Pulling<Real>>();
@@ -165,6 +166,9 @@ void GravityOfBodies::add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s
 
 template void GravityOfBodies::add_to(ForceSink<double>&, const ParticleSystem<double>&) const;
 template void GravityOfBodies::add_to(ForceSink<Quad>&, const ParticleSystem<Quad>&) const;
+template void GravityOfBodies::add_to(ForceSink<Pack>&, const ParticleSystem<Pack>&) const;
+template void GravityOfBodies::add_to(ForceSink<Dual<double, 1>>&, const ParticleSystem<Dual<double, 1>>&) const;
+template void GravityOfBodies::add_to(ForceSink<Dual<Quad, 1>>&, const ParticleSystem<Dual<Quad, 1>>&) const;
 template struct detail::ForceModel<GravityOfBodies, double>;
 template struct detail::ForceModel<GravityOfBodies, Quad>;
 

@@ -49,6 +49,7 @@ struct GravityOfBodies {
             "point_masses", "1", "whether masses attract each other in it; wisdom_holman has that in itself"),
         field<&GravityOfBodies::G>("G", "length^3/mass/time^2", "default: the unit system's own"));
   }
+  static constexpr std::string_view masses_key = "point_masses";
   static constexpr std::string_view only_once = "so every pair would attract twice; take one of them out";
 
   /// @throws Error  for sites without their masses, or a G that is not above 0
@@ -71,8 +72,10 @@ struct GravityOfBodies {
     return {.kepler = point_masses, .G = G, .on_bodies = true, .charges = false, .exclusions = false};
   }
 
+  /// For double, Quad, eight systems side by side, and dual numbers.
   template <class Real>
-    requires(std::is_same_v<Real, double> || std::is_same_v<Real, Quad>)
+    requires(std::is_same_v<Real, double> || std::is_same_v<Real, Quad> || std::is_same_v<Real, Pack> ||
+             std::is_same_v<Real, Dual<double, 1>> || std::is_same_v<Real, Dual<Quad, 1>>)
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
 
  private:

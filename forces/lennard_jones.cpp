@@ -60,6 +60,24 @@ LennardJonesRow row_of(const PairKind& kind, double cutoff, Cutoff cutoff_style,
   return row;
 }
 
+bool has_depth(const LennardJonesRow& row) { return row.range2 > 0; }
+
+/// The row by which all pairs act that act at all; -1: there are more.
+std::ptrdiff_t only_row(const std::vector<LennardJonesRow>& rows) {
+  const auto first = std::find_if(rows.begin(), rows.end(), has_depth);
+  const auto other = std::find_if(first, rows.end(), [&](const auto& row) { return has_depth(row) && row != *first; });
+  return other == rows.end() ? std::min(first - rows.begin(), static_cast<std::ptrdiff_t>(rows.size()) - 1) : -1;
+}
+
+/// The pairs of types that have a depth, where not all have one; null: all.
+const NeighborSelection* selection_of(ForceSink<double>& out, const NeighborList& list,
+                                      const detail::LennardJonesTable& table) {
+  if (list.crowded() >= 0 || std::all_of(table.rows.begin(), table.rows.end(), has_depth)) return nullptr;
+  auto& selection = out.workspace().get<NeighborSelection>();
+  selection.update(list, table.types, [&](int a, int b) { return has_depth(table.rows[at(a * table.types + b)]); });
+  return &selection;
+}
+
 }  // namespace
 
 void LennardJonesForce::check() const {
@@ -130,6 +148,7 @@ const detail::LennardJonesTable& LennardJonesForce::table_for(const std::shared_
   for (LennardJonesRow& row : made->rows) {
     row.close2 = std::pow(row.force12 / (0x1.8p50 * made->force_unit), 2.0 / 13.0);
   }
+  made->only_row = only_row(made->rows);
   table = made;
   return *table;
 }
@@ -171,10 +190,13 @@ void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<d
   const bool mixed = precision == PairPrecision::mixed, sums = out.wants_energy() || out.wants_virial();
   if (mixed) list.update(s, NeighborList::Numbers::whole);
   if (!mixed || sums) list.update(s);
+  const NeighborSelection* const selection = selection_of(out, list, known);
   const LennardJonesKernels& kernels = lennard_jones_kernels();
-  const auto style = static_cast<std::size_t>(known.style), many = static_cast<std::size_t>(known.types > 1);
+  const auto style = static_cast<std::size_t>(known.style), many = static_cast<std::size_t>(known.only_row < 0);
+  const std::ptrdiff_t first_row = std::max<std::ptrdiff_t>(known.only_row, 0);
   const SumPairs quick = kernels.quick[style][many][sums ? 1 : 0], careful = kernels.careful[style][many][sums ? 1 : 0];
-  const PairField field{list.records(), known.rows.data(), known.types, known.force_unit, known.energy_unit};
+  const PairField field{list.records(), known.rows.data() + first_row, known.types, known.force_unit,
+                        known.energy_unit};
   const detail::PairLimits limits{cutoff, 0, detail::strongest_pair * known.force_unit, "Lennard-Jones"};
   const auto sum_doubles = [&](const PairGroup& group, PairSums& found, bool care) {
     (care ? careful : quick)(field, group, found);
@@ -184,16 +206,19 @@ void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<d
     const LennardJonesMixedKernels& mixed_kernels = lennard_jones_mixed_kernels();
     const SumMixedPairs mixed_quick = mixed_kernels.quick[style][many],
                         mixed_careful = mixed_kernels.careful[style][many];
-    const MixedPairField whole{list.whole_records(), table_in_use.rows.data(), known.types, table_in_use.inverse2_unit};
-    detail::add_pair_groups(out, s, list, {table_in_use.force_unit, known.energy_unit}, limits,
-                            [&](const PairGroup& group, PairSums& found, bool care) {
-                              if (sums) sum_doubles(group, found, care);  // for energies and virials
-                              const bool close = sums && found.close;
-                              (care ? mixed_careful : mixed_quick)(whole, group, found);
-                              found.close = found.close || close;
-                            });
+    const MixedPairField whole{list.whole_records(), table_in_use.rows.data() + first_row, known.types,
+                               table_in_use.inverse2_unit};
+    detail::add_pair_groups(
+        out, s, list, {table_in_use.force_unit, known.energy_unit}, limits,
+        [&](const PairGroup& group, PairSums& found, bool care) {
+          if (sums) sum_doubles(group, found, care);  // for energies and virials
+          const bool close = sums && found.close;
+          (care ? mixed_careful : mixed_quick)(whole, group, found);
+          found.close = found.close || close;
+        },
+        selection);
   } else {
-    detail::add_pair_groups(out, s, list, {known.force_unit, known.energy_unit}, limits, sum_doubles);
+    detail::add_pair_groups(out, s, list, {known.force_unit, known.energy_unit}, limits, sum_doubles, selection);
   }
   detail::add_special_pairs(out, s, terms_of(s), limits);
   add_tail(out, s);

@@ -58,6 +58,7 @@ PairTerms<Real> lennard_jones_terms(const Real& r2, const LennardJonesRow& row, 
 struct LennardJonesTable {
   std::vector<LennardJonesRow> rows;  ///< shape (types, types)
   int types = 1;
+  std::ptrdiff_t only_row = 0;  ///< by which all pairs act that act at all; -1: there are more
   LennardJonesStyle style = LennardJonesStyle::shifted;
   double force_unit = 1, energy_unit = 1;
   double tail_energy = 0, tail_virial = 0;  ///< times 1 / volume

@@ -12,6 +12,8 @@ struct LennardJonesRow {
   double force12 = 0, force6 = 0;    ///< F/r = (force12 / r^6 - force6) / r^8
   double energy12 = 0, energy6 = 0;  ///< U = (energy12 / r^6 - energy6) / r^6
   double style[2] = {0, 0};          ///< see LennardJonesStyle
+
+  bool operator==(const LennardJonesRow&) const = default;
 };
 
 /// What the end of the range does, and the numbers of a row that it needs.

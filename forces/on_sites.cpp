@@ -30,28 +30,41 @@ template <class Real> void OnSites<Real>::check_pairs(const ParticleSystem<Real>
   }
 }
 
-template <class Real> void OnSites<Real>::add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-  auto& here = out.workspace().template get<Expanded<Real>>();
+template <class Real>
+template <class Number>
+void OnSites<Real>::add(ForceSink<Number>& out, const ParticleSystem<Number>& s) const {
+  auto& here = out.workspace().template get<Expanded<Number>>();
   bool are_new = false;
   {
     const Spent spent("sites");
     are_new = here.sites.follow(s);
   }
   if (are_new) {
-    here.a = VectorColumn<Real>(here.sites->particles().size());
+    here.a = VectorColumn<Number>(here.sites->particles().size());
     here.workspace = Workspace();
     here.workspace.put(NeighborList(forces_.claims().range));
   }
-  const ParticleSystem<Real>& sites = here.sites->particles();
+  const ParticleSystem<Number>& sites = here.sites->particles();
   const Request wanted{.energy = out.wants_energy(), .virial = out.wants_virial()};
   // Without the length of kicks: a site moves with its body, whatever its own mass.
-  ForceSink<Real> sink(here.a, sites, wanted, &here.workspace);
+  ForceSink<Number> sink(here.a, sites, wanted, &here.workspace);
   if (!out.takes_all()) sink.set_kick_letter(out.kick_letter());
   forces_.add_to(sink, sites);
   if (wanted.energy) out.energy(sink.potential());
   if (sink.failure()) out.fail(*sink.failure());
   const Spent spent("sites");
   here.sites->gather(here.a, sink.virial(), out, s);
+}
+
+template <class Real> void OnSites<Real>::add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  add(out, s);
+}
+template <class Real> void OnSites<Real>::add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const {
+  add(out, s);
+}
+template <class Real>
+void OnSites<Real>::add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const {
+  add(out, s);
 }
 
 template class OnSites<double>;

@@ -43,9 +43,16 @@ template <class Real> class OnSites {
     }
   }
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
+  /// Eight systems side by side, where all forces can be evaluated so.
+  bool has_lanes() const { return forces_.has_lanes(); }
+  void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const;
+  /// With derivatives, where all forces have them.
+  bool has_derivative() const { return forces_.has_derivative(); }
+  void add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const;
   const ForceField<Real>& forces() const { return forces_; }
 
  private:
+  template <class Number> void add(ForceSink<Number>& out, const ParticleSystem<Number>& s) const;
   void check_pairs(const ParticleSystem<Real>& s) const;
 
   ForceField<Real> forces_;

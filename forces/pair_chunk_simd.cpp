@@ -6,13 +6,6 @@ namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
 
-bool acts(const PairFilter& filter, std::int32_t own, std::int32_t other) {
-  std::int64_t a = 0, b = 0;
-  __builtin_memcpy(&a, filter.records + own + 3, sizeof a);
-  __builtin_memcpy(&b, filter.records + other + 3, sizeof b);
-  return (a == filter.type[0] && b == filter.type[1]) || (a == filter.type[1] && b == filter.type[0]);
-}
-
 /// The charges of as many records as there are lanes.
 HWY_INLINE Vector load_charges(const double* charges, const std::int32_t* offsets) {
   const auto record = hn::ShiftRight<2>(hn::PromoteTo(Whole(), hn::LoadU(hn::Rebind<std::int32_t, Lanes>(), offsets)));
@@ -47,10 +40,6 @@ void load(const PairFilter& filter, const PairGroup& group, std::ptrdiff_t first
     }
   }
   if (filter.charges != nullptr) multiply_charges(filter, group, first, chunk);
-  if (filter.type[0] < 0) return;
-  for (std::ptrdiff_t k = 0; k < 8 * chunk.rows; ++k) {
-    if (!acts(filter, group.records[k % 8], group.entries[8 * first + k])) chunk.r2[k] = filter.range2;
-  }
 }
 
 /// Adds whole numbers to those of the rows before.

@@ -21,7 +21,6 @@ struct PairFilter {
   const double* records;           ///< shape (records, 4): x, y, z, type as std::int64_t
   double range2;                   ///< square of the cutoff [length^2]
   double nearest2;                 ///< nearer pairs are too close [length^2]
-  std::int64_t type[2];            ///< only pairs of these; -1: all
   double force_unit, energy_unit;  ///< what the sums count, powers of two
   const double* charges;           ///< of the records, shape (records); null: nobody asks for them [charge]
   double coulomb_constant;         ///< times the charges of a pair [energy length/charge^2]

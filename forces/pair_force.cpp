@@ -40,6 +40,17 @@ const double* charges_of_records(const ParticleSystem<double>& s, const Neighbor
   return to;
 }
 
+/// The pairs of two types; null: all.
+const NeighborSelection* selection_of(ForceSink<double>& out, const ParticleSystem<double>& s, const NeighborList& list,
+                                      const std::array<int, 2>& types) {
+  if (types[0] < 0 || list.crowded() >= 0) return nullptr;
+  auto& selection = out.workspace().get<NeighborSelection>();
+  selection.update(list, s.topology()->type_count(), [&](int a, int b) {
+    return std::array<int, 2>{a, b} == types || std::array<int, 2>{b, a} == types;
+  });
+  return &selection;
+}
+
 }  // namespace
 
 std::array<int, 2> pair_types(const Topology* topology, const std::string& first, const std::string& second) {
@@ -84,10 +95,10 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
   const auto quick = kernels.add[0][all], careful = kernels.add[1][all];
   const double force_unit = force_unit_of(plan.scale);
   const double energy_unit = force_unit * std::ldexp(1.0, std::ilogb(plan.cutoff) + 1);
+  const NeighborSelection* const selection = selection_of(out, s, list, plan.types);
   const PairFilter filter{list.records(),
                           plan.cutoff * plan.cutoff,
                           plan.nearest * plan.nearest,
-                          {plan.types[0], plan.types[1]},
                           force_unit,
                           energy_unit,
                           plan.coulomb_constant != 0 ? charges_of_records(s, list) : nullptr,
@@ -103,7 +114,8 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
           plan.loop(plan.potential, plan.end, {chunk.r2, chunk.product, 8 * chunk.rows}, chunk.energy, chunk.force);
           (care ? careful : quick)(filter, chunk, found);
         }
-      });
+      },
+      selection);
 }
 
 }  // namespace noether::detail

@@ -81,7 +81,8 @@ template <> inline double pair_exp(const double& x) {
 
 namespace detail {
 
-template <class Real, class P> PairTerms<Real> bare_terms(const P& potential, const Real& r2, const Real& product) {
+template <class Real, class P>
+[[gnu::always_inline]] inline PairTerms<Real> bare_terms(const P& potential, const Real& r2, const Real& product) {
   if constexpr (ChargedPairPotential<P>) {
     return potential(r2, product);
   } else {
@@ -109,7 +110,8 @@ struct PairEnd {
 
 /// Times a switch of t = (r2 - from2) inverse.
 template <class Real>
-PairTerms<Real> switched(const PairTerms<Real>& bare, Cutoff style, double from2, double inverse, const Real& r2) {
+[[gnu::always_inline]] inline PairTerms<Real> switched(const PairTerms<Real>& bare, Cutoff style, double from2,
+                                                       double inverse, const Real& r2) {
   Real t = (r2 - Real(from2)) * Real(inverse);
   t = t > Real(0) ? t : Real(0);
   const Switch<Real> off(style, t);
@@ -117,7 +119,8 @@ PairTerms<Real> switched(const PairTerms<Real>& bare, Cutoff style, double from2
 }
 
 template <class Real, class P>
-PairTerms<Real> ended(const P& potential, const PairEnd& end, const Real& r2, const Real& product) {
+[[gnu::always_inline]] inline PairTerms<Real> ended(const P& potential, const PairEnd& end, const Real& r2,
+                                                    const Real& product) {
   const PairTerms<Real> bare = bare_terms(potential, r2, product);
   if (end.style == Cutoff::plain) return bare;
   Real last_energy(end.last.energy), last_force(end.last.force);

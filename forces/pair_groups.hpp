@@ -4,6 +4,7 @@
 #include "forces/pair_row.hpp"
 #include "forces/pairs.hpp"
 #include "neighbors/neighbor_list.hpp"
+#include "neighbors/neighbor_selection.hpp"
 #include "numbers/exact_sum.hpp"
 #include "numbers/parallel.hpp"
 
@@ -71,9 +72,11 @@ inline bool is_thrown(const ParticleSystem<double>& s, const NeighborList& list,
 /// Adds what the neighbors of each particle do to it.
 /// @param kernel  (group, sums, careful): fills PairSums of a group; asked again with care if a pair is `close`
 /// @param limits  those that `kernel` knows, and what messages call the force
+/// @param selection  of the list, up to date; null: all of it
 template <class Kernel>
 void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, const NeighborList& list,
-                     const PairUnits& units, const PairLimits& limits, const Kernel& kernel) {
+                     const PairUnits& units, const PairLimits& limits, const Kernel& kernel,
+                     const NeighborSelection* selection = nullptr) {
   if (list.crowded() >= 0) return out.fail(detail::crowded(s, list.crowded(), list.range()));
   constexpr Index size = NeighborList::group_size;
   const bool sums = out.wants_energy() || out.wants_virial();
@@ -95,7 +98,8 @@ void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, co
           for (const double* column : a) __builtin_prefetch(column + i, 1);
         }
       }
-      const PairGroup group{one.records, one.entries, one.rows};
+      const NeighborList::Group those = selection != nullptr ? selection->group(list, g) : one;
+      const PairGroup group{those.records, those.entries, those.rows};
       kernel(group, found, false);
       if (found.close) {
         kernel(group, found, true);

@@ -102,37 +102,49 @@ struct QuickSum {
   }
 };
 
-/// The same sum for products up to 2^61 units; a stronger one is noted, and only its direction counts.
+/// The same sum for products up to 2^61 units; a stronger one is noted, and only its direction counts. Rows without
+/// products of 2^51 units go as those of QuickSum.
 struct CarefulSum {
   static constexpr std::int64_t strongest = std::int64_t{1} << 57U;
 
-  std::int64_t sum[lanes] = {};
+  WholeVector sum = hn::Zero(Whole());
   bool strong[lanes] = {};  ///< lanes that had a stronger one
 
-  void add(Vector a, Vector b, Vector magic) {
+  HWY_INLINE void add(Vector a, Vector b, Vector magic) {
+    const Vector product = hn::Mul(a, b), unit = hn::Div(magic, hn::Set(Lanes(), magic_number));
+    const Vector most = hn::Mul(unit, hn::Set(Lanes(), 0x1.fcp50));
+    const auto plain = hn::Lt(hn::Abs(product), most);
+    const auto bits = hn::BitCast(Whole(), hn::MulAdd(a, b, magic));
+    sum = hn::Add(sum, hn::IfThenElseZero(hn::RebindMask(Whole(), plain), hn::Sub(bits, hn::BitCast(Whole(), magic))));
+    if (!hn::AllTrue(Lanes(), plain)) [[unlikely]]
+      add_strong(product, magic);
+  }
+  /// @param added  how many products there were
+  HWY_INLINE void store(double /*magic*/, std::ptrdiff_t /*added*/, std::int64_t* out) const {
+    hn::StoreU(sum, Whole(), out);
+  }
+
+ private:
+  /// Those lanes that `add` has left out.
+  HWY_NOINLINE void add_strong(Vector products, Vector magic) {
     const Lanes d;
-    const Whole i;
     double product[lanes], offset[lanes];
-    std::int64_t bits[lanes], zero[lanes];
-    hn::StoreU(hn::Mul(a, b), d, product);
+    std::int64_t all[lanes];
+    hn::StoreU(products, d, product);
     hn::StoreU(magic, d, offset);
-    hn::StoreU(hn::BitCast(i, hn::MulAdd(a, b, magic)), i, bits);
-    hn::StoreU(hn::BitCast(i, magic), i, zero);
+    hn::StoreU(sum, Whole(), all);
     for (std::ptrdiff_t k = 0; k < lanes; ++k) {
       const double unit = offset[k] / magic_number;
       const double size = product[k] < 0 ? -product[k] : product[k];
-      if (size < 0x1.fcp50 * unit) {
-        sum[k] = sum_around(sum[k], bits[k] - zero[k]);
-      } else if (size < 0x1p61 * unit) {
-        sum[k] = sum_around(sum[k], std::llrint(product[k] / unit));
+      if (size < 0x1.fcp50 * unit) continue;
+      if (size < 0x1p61 * unit) {
+        all[k] = sum_around(all[k], std::llrint(product[k] / unit));
       } else {
         strong[k] = true;
-        sum[k] = sum_around(sum[k], product[k] > 0 ? strongest : product[k] < 0 ? -strongest : 0);
+        all[k] = sum_around(all[k], product[k] > 0 ? strongest : product[k] < 0 ? -strongest : 0);
       }
     }
-  }
-  void store(double /*magic*/, std::ptrdiff_t /*added*/, std::int64_t* out) const {
-    for (std::ptrdiff_t k = 0; k < lanes; ++k) out[k] = sum[k];
+    sum = hn::LoadU(Whole(), all);
   }
 };
 

@@ -5,6 +5,7 @@
 #include "forces/pair_force.hpp"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace noether {
@@ -145,15 +146,16 @@ struct ReactionField {
     const Real inverse = Real(1) / sqrt(r2);
     const PairTerms<Real> bare{product * (inverse + Real(k) * r2 - Real(last)),
                                product * (inverse * inverse * inverse - Real(2 * k))};
-    if (!switched_from) return bare;
-    const double from2 = *switched_from * *switched_from;
-    return detail::switched(bare, Cutoff::switch_c4, from2, 1 / (radius * radius - from2), r2);
+    // Without a switch one that begins at the end: a branch would keep loops from going in lanes.
+    const double range2 = radius * radius, from = switched_from.value_or(radius), from2 = from * from;
+    const double width = range2 - from2;
+    return detail::switched(bare, Cutoff::switch_c4, from2, width > 0 ? 1 / width : 0, r2);
   }
 
  private:
   /// k [1/length^3].
   double answer() const {
-    const double inverse = dielectric ? 1 / *dielectric : 0;
+    const double inverse = 1 / dielectric.value_or(std::numeric_limits<double>::infinity());
     return (1 - inverse) / (2 + inverse) / (radius * radius * radius);
   }
 };

@@ -25,6 +25,8 @@ template <class Real> IntegratorClaims Classical<Real>::claims() const {
           .time_dependent = field.time_dependent,
           .keeps_momentum = field.keeps_momentum && method.keeps_momentum,
           .keeps_angular_momentum = field.keeps_angular_momentum && method.keeps_angular_momentum,
+          .angular_momentum = field.keeps_angular_momentum,
+          .memory = method_->memory(),
           .variables = field.variables,
           .second_words = method.second_words,
           .between_steps = !method.adaptive && method_->dense()};
@@ -172,6 +174,18 @@ Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Rea
   field_->evaluations() = counted;
   out.clock().move_to(*at);
   return Real(0);  // at whole steps nothing is left to do, and between them no action is told
+}
+
+template <class Real> void Classical<Real>::go_on_from(const ParticleSystem<Real>& now, ParticleSystem<Real>& raw) {
+  raw.assign_state(now);
+  if (Vector<Real>* const low = method_->low_words()) {
+    raw.keep_low_words(false);
+    raw.keep_low_words(true);
+    low->setZero();
+  }
+  field_->gather(raw, y_);
+  method_->moved(*field_, raw.clock().time(), y_);
+  ahead_.reset();
 }
 
 /// Signed as time runs.

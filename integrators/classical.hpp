@@ -43,6 +43,8 @@ template <class Real> class Classical {
   Advance advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action);
   Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted, std::optional<double> at,
               bool corrected);
+  /// @throws LogicError  for a method whose memory is immovable
+  void go_on_from(const ParticleSystem<Real>& now, ParticleSystem<Real>& raw);
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return field_->energy(s); }
   /// With all digits of particles that keep second words; empty for others.
   std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>& s) { return field_->wide_energy(s); }

@@ -3,6 +3,7 @@
 #include "integrators/free_rotor_simd.hpp"
 #include "numbers/elliptic.hpp"
 #include "numbers/error.hpp"
+#include "numbers/pack.hpp"
 #include "numbers/small_angle.hpp"
 
 #include <algorithm>
@@ -85,7 +86,7 @@ Quaternion<Real> turn_symmetric(const Quaternion<Real>& q, const Vec3<Real>& spi
   Quaternion<Real> turned = q;
   if (along > Real(0)) {  // of a body in a line there is nothing to turn about its axis
     const Real rate = along_axis * ((across - along) / (across * along));
-    if (rate != Real(0)) turned = quaternion_product(q, rotation(Real(h * rate), axis));
+    if (detail::DualOf<Real>::is || rate != Real(0)) turned = quaternion_product(q, rotation(Real(h * rate), axis));
   }
   return quaternion_product(rotation<Real>(h * length / across, spin / length), turned);
 }
@@ -139,6 +140,39 @@ JacobiFunctions<Real> at_sum(const JacobiFunctions<Real>& u, const JacobiFunctio
           (u.dn * v.dn - both * u.cn * v.cn) / below};
 }
 
+/// The turn of a body about an axis, to first order in what its spin has beside that axis: the derivatives there, where
+/// the amplitudes are 0.
+template <class Real>
+Quaternion<Real> turn_about_axis(const Vec3<Real>& I, const Vec3<Real>& m, const Real& length, const Real& h) {
+  using std::sqrt;
+  const Real first = length * ((I[2] - I[1]) / (I[1] * I[2])), second = length * ((I[2] - I[0]) / (I[0] * I[2]));
+  const Real lambda = sqrt(first * second), ratio = first / lambda;  // m1' = - first m2, m2' = second m1
+  const SineCosine<Real> u = sine_cosine<Real>(lambda * h);
+  const Vec3<Real> stop(m[0] * u.cosine - m[1] * ratio * u.sine, m[1] * u.cosine + m[0] / ratio * u.sine, m[2]);
+  return quaternion_product(quaternion_product(conjugate(onto_third(m)), rotation(Real(length * h / I[2]), 2)),
+                            onto_third(stop));
+}
+
+/// Gives psi its derivatives, where numbers have some. Of psi itself they are differences of what grows without bound
+/// near the axes; but p.dq at the end is p.dq at the start + d(h T) + T dh, and with P(m) turned about the third axis
+/// by (m_1 dm_2 - m_2 dm_1)/(1 + m_3)
+///
+///     L dpsi = h dT + 2 T dh - L (what P turns at the end - what it turns at the start) .
+template <class Real>
+void give_slopes(Real& psi, const Vec3<Real>& I, const Vec3<Real>& start, const Vec3<Real>& stop, const Real& length,
+                 const Real& h) {
+  if constexpr (detail::DualOf<Real>::is) {
+    const Real energy = turning_energy<Real>(Vec3<Real>(length * start), I);
+    const auto turned = [](const Vec3<Real>& m, std::size_t k) {
+      return (m[0].value * m[1].slope[k] - m[1].value * m[0].slope[k]) / (1 + m[2].value);
+    };
+    for (std::size_t k = 0; k < psi.slope.size(); ++k) {
+      psi.slope[k] = (h.value * energy.slope[k] + 2 * energy.value * h.slope[k]) / length.value - turned(stop, k) +
+                     turned(start, k);
+    }
+  }
+}
+
 /// The turn of a body of three different moments.
 template <class Real>
 Quaternion<Real> turn_asymmetric(const Quaternion<Real>& q, const Vec3<Real>& inertia, const Vec3<Real>& m,
@@ -146,6 +180,10 @@ Quaternion<Real> turn_asymmetric(const Quaternion<Real>& q, const Vec3<Real>& in
   using std::atan2, std::fabs, std::floor;
   const Vec3<Real> I(inertia[labels.axis[0]], inertia[labels.axis[1]], inertia[labels.axis[2]]), start = labels.to(m);
   const FreeMotion<Real> f = free_motion(I, start, length);
+  if (detail::DualOf<Real>::is && !(f.a1 > Real(0))) {
+    const Quaternion<Real> turn = turn_about_axis(I, start, length, h);
+    return quaternion_product(q, quaternion(turn[0], labels.back(vector_part(turn))));
+  }
   Real rest = f.lambda * h, integral(0);  // of the third kind
   bool odd = false;
   Real halves(0);  // of the period of m: half turns about the third axis
@@ -165,13 +203,42 @@ Quaternion<Real> turn_asymmetric(const Quaternion<Real>& q, const Vec3<Real>& in
   const Real beside = Real(1) - f.n * end.sn * end.sn + f.n * f.start.sn * step.sn * end.cn * end.dn;
   const Real circled = atan2(f.ratio * (f.start.cn * end.sn - f.start.sn * end.cn),
                              f.start.cn * end.cn + f.ratio * f.ratio * f.start.sn * end.sn);
-  const Real psi = length * h / I[2] + f.precession * integral -
-                   f.sense * (atan2(f.root * sines, beside) + circled + half_turn * halves);
+  Real psi = length * h / I[2] + f.precession * integral -
+             f.sense * (atan2(f.root * sines, beside) + circled + half_turn * halves);
   const Real flip(odd ? -1 : 1);
   const Vec3<Real> stop(flip * f.a1 * end.cn, flip * f.sense * f.a2 * end.sn, f.a3 * end.dn);
+  give_slopes(psi, I, start, stop, length, h);
   const Quaternion<Real> turn =
       quaternion_product(quaternion_product(conjugate(onto_third(start)), rotation(psi, 2)), onto_third(stop));
   return quaternion_product(q, quaternion(turn[0], labels.back(vector_part(turn))));
+}
+
+/// The rotation that a body which does not turn begins with: the derivatives of its turn.
+template <class Real>
+Quaternion<Real> turn_from_rest(const Quaternion<Real>& q, const Vec3<Real>& in_body, const Vec3<Real>& inertia,
+                                const Real& h) {
+  const Vec3<Real> rate = rate_in_body<Real>(in_body, inertia);
+  const Real half = h / Real(2);
+  return quaternion_product(q, quaternion(Real(1), Vec3<Real>(half * rate[0], half * rate[1], half * rate[2])));
+}
+
+/// A row of a column in one of its lanes.
+template <int w> Eigen::Matrix<double, w, 1> in_lane(std::size_t lane, const Eigen::Matrix<Pack, w, 1>& row) {
+  Eigen::Matrix<double, w, 1> one;
+  for (int k = 0; k < w; ++k) one[k] = row[k].lane[lane];
+  return one;
+}
+
+/// Turns eight bodies one after the other.
+/// @param turn  of one lane, as doubles
+template <class Turn> Turned<Pack> turn_lane_by_lane(const Turn& turn) {
+  Turned<Pack> all;
+  for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {
+    const Turned<double> one = turn(lane);
+    for (int k = 0; k < 4; ++k) all.orientation[k].lane[lane] = one.orientation[k];
+    all.action.lane[lane] = one.action;
+  }
+  return all;
 }
 
 }  // namespace
@@ -181,7 +248,11 @@ Turned<Real> turn_exactly(const Quaternion<Real>& q, const Vec3<Real>& spin, con
   using std::sqrt;
   const Vec3<Real> in_body = spin_in_body(q, spin);
   const Real action = h * turning_energy(in_body, inertia), length = sqrt(norm2(spin));
-  if (!(length != Real(0)) || turning_freedoms(inertia) == 0) return {q, action};
+  if (turning_freedoms(inertia) == 0) return {q, action};
+  if (!(length != Real(0))) {
+    if constexpr (detail::DualOf<Real>::is) return {turn_from_rest(q, in_body, inertia, h), action};
+    return {q, action};
+  }
   std::array<int, 3> by = {0, 1, 2};  // ascending moments
   std::sort(by.begin(), by.end(), [&](int a, int b) { return inertia[a] < inertia[b]; });
   const Real low = inertia[by[0]], middle = inertia[by[1]], high = inertia[by[2]];
@@ -198,6 +269,13 @@ Turned<Real> turn_exactly(const Quaternion<Real>& q, const Vec3<Real>& spin, con
     turned = turn_asymmetric(q, inertia, m, length, labels, h);
   }
   return {renormalized(turned), action};
+}
+
+template <>
+Turned<Pack> turn_exactly(const Quaternion<Pack>& q, const Vec3<Pack>& spin, const Vec3<Pack>& inertia, const Pack& h) {
+  return turn_lane_by_lane([&](std::size_t k) {
+    return turn_exactly<double>(in_lane(k, q), in_lane(k, spin), in_lane(k, inertia), h.lane[k]);
+  });
 }
 
 template <class Real>
@@ -218,6 +296,32 @@ Turned<Real> turn_by_axes(const Quaternion<Real>& q, const Vec3<Real>& spin, con
   }
   return {renormalized(turn.q), action};
 }
+
+template <>
+Turned<Pack> turn_by_axes(const Quaternion<Pack>& q, const Vec3<Pack>& spin, const Vec3<Pack>& inertia, const Pack& h,
+                          const AxisOrder& order) {
+  return turn_lane_by_lane([&](std::size_t k) {
+    return turn_by_axes<double>(in_lane(k, q), in_lane(k, spin), in_lane(k, inertia), h.lane[k], order);
+  });
+}
+
+namespace {
+
+/// Turns one body of eight systems, which stand side by side as eight bodies of one do.
+/// @return whether it could: none turns too far for the lanes
+bool turn_in_lanes(RowColumn<Pack, 4>& orientation, const VectorColumn<Pack>& spin, const VectorColumn<Pack>& inertia,
+                   double h, const AxisOrder& order, Index i, Pack& action) {
+  const auto of = [&](const auto& column, int k) { return column.component(k)[i].lane.data(); };
+  double* turned[4];
+  for (int k = 0; k < 4; ++k) turned[k] = orientation.component(k)[i].lane.data();
+  const TurningColumns columns{{turned[0], turned[1], turned[2], turned[3]},
+                               {of(spin, 0), of(spin, 1), of(spin, 2)},
+                               {of(inertia, 0), of(inertia, 1), of(inertia, 2)},
+                               action.lane.data()};
+  return free_rotor_kernels().by_axes(columns, h, order.data(), 0, Pack::lanes) == Pack::lanes;
+}
+
+}  // namespace
 
 template <class Real>
 void turn_all_by_axes(RowColumn<Real, 4>& orientation, const VectorColumn<Real>& spin,
@@ -241,6 +345,11 @@ void turn_all_by_axes(RowColumn<Real, 4>& orientation, const VectorColumn<Real>&
         action.data()};
     for (Index i = begin; (i = free_rotor_kernels().by_axes(columns, h, order.data(), i, end)) < end; i += 8)
       turn(i, std::min(i + 8, end));
+  } else if constexpr (std::is_same_v<Real, Pack>) {
+    const bool one_step = all(h == Pack(h.lane[0]));
+    for (Index i = begin; i < end; ++i) {
+      if (!one_step || !turn_in_lanes(orientation, spin, inertia, h.lane[0], order, i, action[i])) turn(i, i + 1);
+    }
   } else {
     turn(begin, end);
   }
@@ -259,16 +368,23 @@ AxisOrder axis_order(const std::string& text) {
   return order;
 }
 
-template Turned<double> turn_exactly(const Quaternion<double>&, const Vec3<double>&, const Vec3<double>&,
-                                     const double&);
-template Turned<Quad> turn_exactly(const Quaternion<Quad>&, const Vec3<Quad>&, const Vec3<Quad>&, const Quad&);
-template Turned<double> turn_by_axes(const Quaternion<double>&, const Vec3<double>&, const Vec3<double>&, const double&,
-                                     const AxisOrder&);
-template Turned<Quad> turn_by_axes(const Quaternion<Quad>&, const Vec3<Quad>&, const Vec3<Quad>&, const Quad&,
-                                   const AxisOrder&);
-template void turn_all_by_axes(RowColumn<double, 4>&, const VectorColumn<double>&, const VectorColumn<double>&,
-                               const double&, const AxisOrder&, Index, Index, ScalarColumn<double>&);
-template void turn_all_by_axes(RowColumn<Quad, 4>&, const VectorColumn<Quad>&, const VectorColumn<Quad>&, const Quad&,
-                               const AxisOrder&, Index, Index, ScalarColumn<Quad>&);
+#define NOETHER_FREE_ROTOR(Real)                                                                                  \
+  template Turned<Real> turn_exactly(const Quaternion<Real>&, const Vec3<Real>&, const Vec3<Real>&, const Real&); \
+  template Turned<Real> turn_by_axes(const Quaternion<Real>&, const Vec3<Real>&, const Vec3<Real>&, const Real&,  \
+                                     const AxisOrder&);                                                           \
+  template void turn_all_by_axes(RowColumn<Real, 4>&, const VectorColumn<Real>&, const VectorColumn<Real>&,       \
+                                 const Real&, const AxisOrder&, Index, Index, ScalarColumn<Real>&);
+
+using Tangent = Dual<double, 1>;
+using WideTangent = Dual<Quad, 1>;
+
+NOETHER_FREE_ROTOR(double)
+NOETHER_FREE_ROTOR(Quad)
+NOETHER_FREE_ROTOR(Tangent)
+NOETHER_FREE_ROTOR(WideTangent)
+template void turn_all_by_axes(RowColumn<Pack, 4>&, const VectorColumn<Pack>&, const VectorColumn<Pack>&, const Pack&,
+                               const AxisOrder&, Index, Index, ScalarColumn<Pack>&);
+
+#undef NOETHER_FREE_ROTOR
 
 }  // namespace noether

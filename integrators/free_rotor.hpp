@@ -3,6 +3,7 @@
 
 #include "engine/bodies.hpp"
 #include "engine/description.hpp"
+#include "numbers/pack.hpp"
 
 #include <array>
 #include <cstdint>
@@ -34,7 +35,8 @@ template <class Real> struct Turned {
 ///
 /// Nothing is inverted: addition theorems of the functions and of the integral of the third kind start from m itself.
 /// Bodies of two equal moments, of three, and in a line have closed forms; a body without spin does not turn. Errors
-/// are some units in the last place of the angle.
+/// are some units in the last place of the angle. In lanes (numbers/pack.hpp) each body turns by itself; dual numbers
+/// carry the derivatives.
 /// @param spin  in space [mass length^2/time]
 /// @param inertia  principal moments [mass length^2]; 0 0 0 of a point, which stays
 /// @cost some 0.3 us; a quarter turn and more within `h` one integral more
@@ -52,7 +54,8 @@ template <class Real>
 Turned<Real> turn_by_axes(const Quaternion<Real>& q, const Vec3<Real>& spin, const Vec3<Real>& inertia, const Real& h,
                           const AxisOrder& order);
 
-/// The same of the bodies [begin, end), `begin` a multiple of 8, with the same bits; a point stays.
+/// The same of the bodies [begin, end), `begin` a multiple of 8, with the same bits; a point stays. In packs, the
+/// bodies of eight systems go in lanes where all have one `h`.
 /// @param action  of each turn, shape (n), n rounded up to a multiple of 8
 /// @cost of doubles in lanes some 15 ns a body where none turns by more than a right angle about an axis at a time
 template <class Real>
@@ -63,16 +66,11 @@ void turn_all_by_axes(RowColumn<Real, 4>& orientation, const VectorColumn<Real>&
 /// Reads "xyz", "zyx" and the other orders. @throws Error
 AxisOrder axis_order(const std::string& text);
 
-extern template Turned<double> turn_exactly(const Quaternion<double>&, const Vec3<double>&, const Vec3<double>&,
-                                            const double&);
-extern template Turned<Quad> turn_exactly(const Quaternion<Quad>&, const Vec3<Quad>&, const Vec3<Quad>&, const Quad&);
-extern template Turned<double> turn_by_axes(const Quaternion<double>&, const Vec3<double>&, const Vec3<double>&,
-                                            const double&, const AxisOrder&);
-extern template Turned<Quad> turn_by_axes(const Quaternion<Quad>&, const Vec3<Quad>&, const Vec3<Quad>&, const Quad&,
-                                          const AxisOrder&);
-extern template void turn_all_by_axes(RowColumn<double, 4>&, const VectorColumn<double>&, const VectorColumn<double>&,
-                                      const double&, const AxisOrder&, Index, Index, ScalarColumn<double>&);
-extern template void turn_all_by_axes(RowColumn<Quad, 4>&, const VectorColumn<Quad>&, const VectorColumn<Quad>&,
-                                      const Quad&, const AxisOrder&, Index, Index, ScalarColumn<Quad>&);
+// All are compiled once, for double, Quad, Pack, Dual<double, 1> and Dual<Quad, 1>.
+template <>
+Turned<Pack> turn_exactly(const Quaternion<Pack>& q, const Vec3<Pack>& spin, const Vec3<Pack>& inertia, const Pack& h);
+template <>
+Turned<Pack> turn_by_axes(const Quaternion<Pack>& q, const Vec3<Pack>& spin, const Vec3<Pack>& inertia, const Pack& h,
+                          const AxisOrder& order);
 
 }  // namespace noether

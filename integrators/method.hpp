@@ -65,6 +65,15 @@ template <class Real> class Method {
   /// Goes from y(t) to y(t + h) in place. On failure y and the method's state are void.
   virtual StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) = 0;
 
+  /// What it goes on from beside y, where that is moved between two steps. Most remember no more than guesses.
+  virtual Memory memory() const { return Memory::immovable; }
+  /// y was moved at time t, after a step: what is kept of the old one (rates, rounding errors, differences) becomes
+  /// that of the new one; lengths of steps and earlier states stay.
+  /// @throws LogicError  where memory is immovable
+  virtual void moved(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& /*y*/) {
+    if (memory() == Memory::immovable) throw LogicError("a state was moved under a method that does not know how");
+  }
+
   /// Second words of y, which particles keep beside the first ones from step to step (`ParticleSystem::LowWords`); null
   /// for a method whose state is y alone, with whatever else it saves.
   virtual Vector<Real>* low_words() { return nullptr; }

@@ -49,7 +49,8 @@ struct RotatingOptions {
 /// Free motion and free turns commute, so A is exact with the rotor `exact`, and Runge-Kutta-Nystroem tables keep their
 /// order, since T is quadratic in the momenta; `axes` makes it a symmetric map of order 2. With p = 2 (0, S) q all this
 /// is canonical in the R^8 of q and p, where the shadow Hamiltonian looks (docs/theory/rigid_body.md). A point beside
-/// bodies has no moments and does not turn; a body that a fixed point holds turns about it.
+/// bodies has no moments and does not turn; a body that a fixed point holds turns about it. Eight systems in the lanes
+/// of a `Pack` have the bits of each alone, and dual numbers carry the tangent map.
 /// @cost one free turn for each body and A
 /// @source ToumaWisdom1994, DullweberLeimkuhlerMcLachlan1997
 template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
@@ -79,6 +80,7 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
     if (Wrapped<H>::claims().constraints > 0) {
       throw Error("constraints hold points, but some particles are rigid bodies; take one of the two out");
     }
+    if constexpr (InLanes<real>) check_lanes(s);
     turned_ = ScalarColumn<real>((s.size() + 7) / 8 * 8);
   }
   void flow(char letter, ParticleSystem<real>& s, const real& h) {
@@ -108,6 +110,19 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
   }
 
  private:
+  /// @throws Error  where systems side by side differ in what a body is: a point, a line or a body
+  static void check_lanes(const ParticleSystem<real>& s) {
+    const auto& inertia = s.template column<BodyInertia>();
+    for (Index i = 0; i < s.size(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const auto turns = inertia.component(k)[i] > real(0);
+        if (any(turns) == all(turns)) continue;
+        throw Error("'" + s.name(i) +
+                    "' has a moment of inertia that is 0 in some lanes and not in others; run these "
+                    "systems one by one");
+      }
+    }
+  }
   void turn(ParticleSystem<real>& s, const real& h) {
     const Spent spent("rotor");
     const auto& inertia = std::as_const(s).template column<BodyInertia>();

@@ -26,6 +26,9 @@ namespace noether {
 template <SplitHamiltonian H> class Tidal : public Wrapped<H> {
  public:
   using real = typename H::real;
+  static_assert(std::numeric_limits<real>::is_specialized,
+                "the letter T of tides repeats until velocities settle, each system after its own number of rounds: "
+                "systems in lanes run one by one, and dual numbers have no such steps");
 
   Tidal(H hamiltonian, Tides tides) : Wrapped<H>(std::move(hamiltonian)), tides_(std::move(tides)) { tides_.check(); }
 

@@ -73,6 +73,9 @@ template <Integrator I> class Wrapped<I> {
               const std::optional<double>& at, bool corrected) {
     return detail::settle(integrator_, raw, out, wanted, at, corrected);
   }
+  void go_on_from(const ParticleSystem<real>& now, ParticleSystem<real>& raw) {
+    detail::go_on_from(integrator_, now, raw);
+  }
   EnergyTerms<real> energy(const ParticleSystem<real>& s) { return integrator_.energy(s); }
   std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<real>& s) {
     return detail::wide_energy_of(integrator_, s);
@@ -85,10 +88,7 @@ template <Integrator I> class Wrapped<I> {
   /// Goes on from another state of the particles at a whole step, as after an edit: the method begins anew.
   /// @param now  settled, then changed
   void continue_from(const ParticleSystem<real>& now, ParticleSystem<real>& raw) {
-    raw = now;
-    raw.phase() = Phase{};
-    raw.keep_low_words(false);
-    integrator_.bind(raw);
+    detail::begin_from(integrator_, now, raw);
   }
 
   I integrator_;

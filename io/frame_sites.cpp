@@ -1,14 +1,16 @@
 #include "io/frame_sites.hpp"
 
-#include "engine/charge.hpp"
 #include "engine/topology.hpp"
 #include "io/frame_particles.hpp"
 #include "io/trajectory_bodies.hpp"
 #include "io/trajectory_digest.hpp"
 #include "io/trajectory_reader.hpp"
+#include "io/trajectory_sites.hpp"
 #include "io/trajectory_topology.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <numeric>
 #include <utility>
 
 namespace noether::io {
@@ -32,22 +34,19 @@ FrameSites::FrameSites(const TrajectoryReader& reader, const std::filesystem::pa
       order_(read_order(reader.file(), bodies_.size())),
       sites_(bodies_, false),
       shared_(reader.shared()) {
-  const ParticleSystem<double>& sites = sites_.particles();
-  shared_.ids.clear(), shared_.names.clear(), shared_.masses.clear(), shared_.types.clear(), shared_.charges.clear();
-  const Topology* topology = bodies_.topology();
-  for (Index i = 0; i < bodies_.size(); ++i) {
-    const BodyKind* kind = bodies_.bodies()->kind(i);
-    for (Index a = sites_.first(i); a < sites_.first(i + 1); ++a) {
-      const BodySite* site = kind != nullptr ? &kind->sites[static_cast<std::size_t>(a - sites_.first(i))] : nullptr;
-      shared_.ids.push_back(a);
-      const bool alone = site == nullptr || kind->sites.size() == 1;  // it goes by the name of its body
-      shared_.names.push_back(alone || site->name.empty() ? bodies_.name(i) : site->name);
-      shared_.masses.push_back(site != nullptr ? site->mass : sites.masses()[a]);
-      if (sites.has<Charge>()) shared_.charges.push_back(sites.column<Charge>()[a]);
-      if (topology == nullptr || topology->type_names.empty()) continue;
-      const auto type = static_cast<std::size_t>(site != nullptr ? site->type : topology->type(i));
-      shared_.types.push_back(type < topology->type_names.size() ? topology->type_names[type] : std::to_string(type));
-    }
+  all_.resize(static_cast<std::size_t>(bodies_.size()));
+  std::iota(all_.begin(), all_.end(), Index{0});
+  SiteConstants constants = site_constants(bodies_, sites_, all_);
+  shared_.ids.resize(constants.names.size());
+  std::iota(shared_.ids.begin(), shared_.ids.end(), std::int64_t{0});
+  shared_.names = std::move(constants.names);
+  shared_.masses = std::move(constants.masses);
+  shared_.charges = std::move(constants.charges);
+  shared_.types.clear();
+  for (const std::int64_t one : constants.types) {
+    const std::vector<std::string>& names = bodies_.topology()->type_names;
+    const auto type = static_cast<std::size_t>(one);
+    shared_.types.push_back(type < names.size() ? names[type] : std::to_string(type));
   }
 }
 
@@ -72,7 +71,6 @@ Frame FrameSites::frame(const Frame& of_bodies) {
 
   Frame all{.step = of_bodies.step, .time = of_bodies.time, .positions = {}, .velocities = {}};
   all.edges = of_bodies.edges;
-  const ParticleSystem<double>& sites = sites_.particles();
   for (const auto& [name, column] : shared_.columns) {  // of the body of each site
     const auto width = static_cast<std::size_t>(column.first);
     std::vector<double>& values = all.columns[name];
@@ -83,18 +81,11 @@ Frame FrameSites::frame(const Frame& of_bodies) {
         values.insert(values.end(), from, from + static_cast<std::ptrdiff_t>(width));
     }
   }
-  for (Index i = 0; i < bodies_.size(); ++i) {
-    const Vec3<double> rate = angular_velocity<double>(bodies_.column<BodyOrientation>()[i],
-                                                       bodies_.column<BodySpin>()[i], bodies_.column<BodyInertia>()[i]);
-    for (Index a = sites_.first(i); a < sites_.first(i + 1); ++a) {
-      const Vec3<double> x = sites.positions()[a], v = bodies_.velocities()[i] + cross<double>(rate, sites_.arm(a));
-      all.positions.insert(all.positions.end(), x.data(), x.data() + 3);
-      all.velocities.insert(all.velocities.end(), v.data(), v.data() + 3);
-      if (all.edges.empty()) continue;
-      const Vec3<std::int32_t> images = sites.images()[a];
-      all.images.insert(all.images.end(), images.data(), images.data() + 3);
-    }
-  }
+  SiteRows rows;
+  site_rows(bodies_, sites_, all_, rows);
+  all.positions = std::move(rows.positions);
+  all.velocities = std::move(rows.velocities);
+  all.images = std::move(rows.images);
   return all;
 }
 

@@ -31,7 +31,7 @@ class FrameSites {
 
  private:
   ParticleSystem<double> bodies_;
-  std::vector<Index> order_;  ///< the row of each particle
+  std::vector<Index> order_, all_;  ///< the row of each particle, and their indices
   Sites<double> sites_;
   Frames shared_;
 };

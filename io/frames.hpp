@@ -11,6 +11,12 @@
 
 namespace noether::io {
 
+/// The sites of rigid bodies at one moment, row by row.
+struct SiteRows {
+  std::vector<double> positions = {}, velocities = {};  ///< (m, 3) [length], [length/time]
+  std::vector<std::int32_t> images = {};                ///< (m, 3); empty without a periodic box
+};
+
 /// One moment of a trajectory; particles stand in id order. Of a first-order system, variables and nothing else.
 struct Frame {
   std::int64_t step = 0;
@@ -21,6 +27,7 @@ struct Frame {
   std::vector<double> edges = {};         ///< (3), of the periodic box [length]; empty without one
   /// Other columns that move, by name: (n, width), row by row.
   std::map<std::string, std::vector<double>> columns = {};
+  SiteRows sites = {};  ///< where the file has them
 };
 
 /// All frames of a trajectory and what they share.

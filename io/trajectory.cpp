@@ -3,6 +3,7 @@
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/sandbox.hpp"
+#include "io/trajectory_bodies.hpp"
 #include "io/trajectory_constants.hpp"
 #include "io/trajectory_datasets.hpp"
 #include "io/trajectory_digest.hpp"
@@ -41,7 +42,8 @@ class TrajectoryWriter::File {
   const std::filesystem::path& path() const { return path_; }
 
   void begin(const ParticleSystem<double>& state) {
-    if (!hdf5_) create(state);
+    if (!hdf5_) return create(state);
+    if (!bodies_known_) add_bodies(state);
   }
 
   /// A moment that has just been written is not written again: of a cadence in wall time a stop may be a look already.
@@ -131,12 +133,13 @@ class TrajectoryWriter::File {
     waiting_.clear();
     ids_.clear();
     variables_ = 0;
-    periodic_ = wrote_ = false;
+    periodic_ = wrote_ = bodies_known_ = false;
     hdf5_.reset();
   }
 
   void create(const ParticleSystem<double>& state) {
     units_ = &state.units();
+    bodies_known_ = true;
     hdf5_ = Hdf5File::create(path_);
     write_header(*hdf5_, *units_, options_.scene_toml);
     if (state.variables().empty()) {
@@ -152,6 +155,20 @@ class TrajectoryWriter::File {
     hdf5_->set_attribute("/noether", constants_attribute, constants_digest(*hdf5_));
     hdf5_->set_attribute("/noether", headers_attribute, headers_digest(*hdf5_));
     hdf5_->take_name();
+  }
+
+  /// A file from before it said what bodies are made of says so, if it is what was written.
+  void add_bodies(const ParticleSystem<double>& state) {
+    bodies_known_ = true;
+    if (state.bodies() == nullptr || hdf5_->has(bodies_path + "/kind") || constants_differ(*hdf5_) ||
+        hdf5_->text_attribute("/noether", headers_attribute) != headers_digest(*hdf5_)) {
+      return;
+    }
+    match(state);
+    write_rigid_bodies(*hdf5_, state, order_);
+    hdf5_->set_attribute("/noether", constants_attribute, constants_digest(*hdf5_));
+    hdf5_->set_attribute("/noether", headers_attribute, headers_digest(*hdf5_));
+    flush();
   }
 
   void describe_system(const ParticleSystem<double>& state) {
@@ -179,6 +196,9 @@ class TrajectoryWriter::File {
     if (periodic_) create_box_frames(particles, rows, few);
     for (const auto& column : state.columns()) {
       if (column.info.moves()) create_column_frames(column.info, particles);
+    }
+    if (options_.sites) {
+      frame_.sites.create(*hdf5_, state, order_, [&](Index numbers) { return rows_at_once(numbers, frame_bytes); });
     }
     frame_.digest = create_digests(frame_digests_path);
     hdf5_->open(position + "/value").write_last();
@@ -267,6 +287,7 @@ class TrajectoryWriter::File {
       const std::vector<Index> shape = hdf5_->open(path).growing_shape();
       frame_.columns[name] = BufferedDataset<double>(open(path, {particles, shape.back()}));
     }
+    frame_.sites.open(*hdf5_, [&](const std::string& path, const auto& row) { return open(path, row); });
     periodic_ = hdf5_->has(image_path);
     if (!periodic_) return;
     frame_.image = BufferedDataset<std::int64_t>(open(image_path + "/value", {particles, 3}));
@@ -302,6 +323,7 @@ class TrajectoryWriter::File {
     for (const std::string& name : moving_columns(*hdf5_)) {
       paths.push_back(fmt::format("{}/{}/value", particles_path, name));
     }
+    for (const std::string& path : growing_sites(*hdf5_)) paths.push_back(path);
     if (hdf5_->has(system_path + "/value")) {
       paths = {system_path + "/step", system_path + "/time", system_path + "/value"};
     }
@@ -399,6 +421,7 @@ class TrajectoryWriter::File {
     } else {
       if (periodic_) write_box(state);
       write_columns(state);
+      frame_.sites.append(state, order_, now_.sites);
       gather(state.velocities(), now_.velocities);
       frame_.velocity.append(now_.velocities);
       gather(state.positions(), now_.positions);
@@ -511,6 +534,7 @@ class TrajectoryWriter::File {
   bool periodic_ = false;                            ///< frames have a box, and images of the particles
   Frame now_;                                        ///< the frame that is being written, or was the last
   bool wrote_ = false;                               ///< `now_` is in the file
+  bool bodies_known_ = false;                        ///< the file says what bodies are made of, or there is no need
   std::chrono::steady_clock::time_point flushed_{};  ///< long ago: the first sample or frame goes out at once
 };
 

@@ -16,6 +16,18 @@ struct TrajectoryOptions {
   bool frames = true;        ///< write positions and velocities; without, only the samples of monitors
   std::string scene_toml{};  ///< effective scene, stored as /noether/scene
   bool lost = false;         ///< load() looks for no file: the one that the saved run counts on is gone
+  bool sites = false;        ///< write the sites of rigid bodies too (io/trajectory_sites.hpp), in each frame
+
+  static constexpr auto describe() {
+    return part<TrajectoryOptions>(
+        "trajectory", "frames and monitors' samples in an H5MD file",
+        quantities("position[n][3] [length], velocity[n][3] [length/time], id, mass, name, "
+                   "species, charge, bonds; "
+                   "every monitor's quantities below /noether/monitors; of a system, "
+                   "value[n] below /noether/system"),
+        source("DeBuyl2014"),
+        field<&TrajectoryOptions::sites>("sites", "1", "rigid bodies: each frame has their sites too, as atoms"));
+  }
 };
 
 /// The file that a saved run counts on is missing, damaged or shorter: exit code 3.
@@ -27,19 +39,15 @@ class TrajectoryLost : public FileError {
 /// Writes frames and samples to one HDF5 file: `sim.every(100, io::TrajectoryWriter{"run.h5"})`.
 ///
 /// Particles stand in id order in every frame; a first-order system has its variables below /noether/system. The file
-/// is created (an old one is replaced) at the first look. Copies share one file.
+/// is created (an old one is replaced) at the first look. Copies share one file. A file that goes on keeps what frames
+/// it began with; one from before it said what rigid bodies are made of says so from then on.
 /// @cost O(n) per frame
 class TrajectoryWriter {
  public:
   explicit TrajectoryWriter(std::filesystem::path file, TrajectoryOptions options = {});
 
   static constexpr auto describe() {
-    return part<TrajectoryWriter>("trajectory", "frames and monitors' samples in an H5MD file",
-                                  quantities("position[n][3] [length], velocity[n][3] [length/time], id, mass, name, "
-                                             "species, charge, bonds; "
-                                             "every monitor's quantities below /noether/monitors; of a system, "
-                                             "value[n] below /noether/system"),
-                                  source("DeBuyl2014"));
+    return part<TrajectoryWriter>("trajectory", "frames and monitors' samples in an H5MD file", source("DeBuyl2014"));
   }
 
   /// Makes the file, which may have to wait for its first frame. @throws FileError

@@ -3,6 +3,7 @@
 
 #include "engine/monitor.hpp"
 #include "io/buffered_dataset.hpp"
+#include "io/trajectory_sites.hpp"
 
 #include <cstdint>
 #include <map>
@@ -47,11 +48,13 @@ struct FrameDatasets {
   BufferedDataset<std::int64_t> step, image;
   BufferedDataset<double> time;
   std::map<std::string, BufferedDataset<double>> columns;  ///< others that move, by name
-  std::optional<BufferedDataset<std::int64_t>> digest;     ///< of each frame; none in a file from before there were any
+  SiteDatasets sites;
+  std::optional<BufferedDataset<std::int64_t>> digest;  ///< of each frame; none in a file from before there were any
 
   /// The values that readers go by come last: a frame that has them has everything.
   void write_out() {
     for (auto& [name, column] : columns) column.write_out();
+    sites.write_out();
     if (digest) digest->write_out();
     velocity.write_out();
     image.write_out();

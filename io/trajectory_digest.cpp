@@ -44,6 +44,13 @@ RowDigest frame_digest(const Frame& frame) {
     hash.add(std::string_view(name));
     hash.add(std::span<const double>(values));
   }
+  if (!frame.sites.positions.empty()) {
+    hash.add(std::string_view("sites"));
+    hash.add(std::span<const double>(frame.sites.positions));
+    hash.add(std::span<const double>(frame.sites.velocities));
+    const std::vector<std::int64_t> crossed(frame.sites.images.begin(), frame.sites.images.end());
+    hash.add(std::span<const std::int64_t>(crossed));
+  }
   return hash.row();
 }
 

@@ -32,7 +32,8 @@ inline const std::string headers_attribute = "attributes_sha256";
 inline const std::string scene_attribute = "scene_sha256";
 
 /// SHA-256 of "noether-frame-1\n", int64 step, float64 time, x and v (n, 3), variables, int64 images (n, 3), edges, and
-/// of each other column that moves its name and its values; row by row, as the file has them.
+/// of each other column that moves its name and its values, and x, v and images (m, 3) of sites where the file has
+/// them; row by row, as the file has them.
 RowDigest frame_digest(const Frame& frame);
 
 /// SHA-256 of "noether-sample-1\n", int64 step, float64 time, and of each quantity, in the order of their names, its
@@ -40,9 +41,8 @@ RowDigest frame_digest(const Frame& frame);
 RowDigest sample_digest(std::int64_t step, double time,
                         const std::map<std::string, std::span<const double>, std::less<>>& quantities);
 
-/// SHA-256 of "noether-constants-1\n" and of the datasets of the particles, or of a system, that do not grow, of
-/// /connectivity and of /noether/topology, of each group in the order of their names: each name, and its values. 64
-/// hexadecimal digits.
+/// SHA-256 of "noether-constants-1\n" and of the datasets of `constant_groups()` that do not grow, of each group in the
+/// order of their names: each name, and its values. 64 hexadecimal digits.
 /// @throws FileError  for what HDF5 cannot read
 std::string constants_digest(const Hdf5File& file);
 

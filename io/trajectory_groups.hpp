@@ -10,10 +10,10 @@
 
 namespace noether::io {
 
-/// Their datasets stand once, all that do not grow: of particles, systems, bonded terms and bodies.
+/// Their datasets stand once, all that do not grow: of particles, systems, bonded terms, bodies and their sites.
 inline const std::vector<std::string>& constant_groups() {
-  static const std::vector<std::string> groups = {particles_path, system_path, connectivity_path, topology_path,
-                                                  bodies_path};
+  static const std::vector<std::string> groups = {particles_path, system_path, connectivity_path,
+                                                  topology_path,  bodies_path, sites_path};
   return groups;
 }
 

@@ -15,6 +15,7 @@ namespace noether::io {
 inline const std::string particles_path = "/particles/system";
 inline const std::string image_path = "/particles/system/image";
 inline const std::string edges_path = "/particles/system/box/edges";
+inline const std::string sites_path = "/particles/sites";
 inline const std::string system_path = "/noether/system";
 inline const std::string monitors_path = "/noether/monitors";
 

@@ -2,6 +2,7 @@
 
 #include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
+#include "io/trajectory_sites.hpp"
 #include "io/trajectory_topology.hpp"
 #include "numbers/error.hpp"
 #include "numbers/quantity.hpp"
@@ -104,6 +105,7 @@ void TrajectoryReader::open_particles(const std::filesystem::path& path) {
     }
   }
   open_columns(path);
+  open_sites(path);
   steps_ = file_.open(particles_path + "/position/step").read_integers();
   times_ = file_.open(particles_path + "/position/time").read_reals();
   const UnitSystem& units = known_units(shared_.units, path);
@@ -114,6 +116,7 @@ void TrajectoryReader::open_particles(const std::filesystem::path& path) {
       {position_.rows(), velocity_.rows(), static_cast<Index>(steps_.size()), static_cast<Index>(times_.size())});
   if (periodic_) frames_ = std::min({frames_, image_.rows(), edges_.rows()});
   for (const auto& [name, column] : columns_) frames_ = std::min(frames_, column.rows());
+  for (const auto& [name, dataset] : sites_) frames_ = std::min(frames_, dataset.rows());
 }
 
 void TrajectoryReader::open_columns(const std::filesystem::path& path) {
@@ -130,6 +133,23 @@ void TrajectoryReader::open_columns(const std::filesystem::path& path) {
     shared_.columns[name] = {shape[2], file_.text_attribute(group, "noether_unit")};
     columns_.emplace(name, std::move(column));
   }
+}
+
+void TrajectoryReader::open_sites(const std::filesystem::path& path) {
+  if (!file_.has(sites_path + "/id")) return;
+  site_count_ = file_.open(sites_path + "/id").rows();
+  for (const std::string& name : growing_sites(file_)) {
+    Hdf5Dataset dataset = file_.open(name);
+    const std::vector<Index> shape = dataset.shape();
+    if (shape.size() != 3 || shape[1] != site_count_ || shape[2] != 3) {
+      throw FileError(
+          fmt::format("damaged: '{}' of {} sites does not have the shape ({}, 3)", name, site_count_, site_count_),
+          {.file = path.string()});
+    }
+    sites_.emplace(name, std::move(dataset));
+  }
+  if (sites_.size() != (periodic_ ? 3U : 2U))
+    throw FileError("damaged: positions, velocities or images of sites are missing", {.file = path.string()});
 }
 
 std::optional<RowDigest> TrajectoryReader::digest(Index k) const {
@@ -150,6 +170,12 @@ Frame TrajectoryReader::frame(Index k) const {
     frame.edges = edges_.read_reals(k, 1);
   }
   for (const auto& [name, column] : columns_) frame.columns[name] = column.read_reals(k, 1);
+  if (sites_.empty()) return frame;
+  frame.sites.positions = sites_.at(sites_path + "/position/value").read_reals(k, 1);
+  frame.sites.velocities = sites_.at(sites_path + "/velocity/value").read_reals(k, 1);
+  if (!periodic_) return frame;
+  for (const std::int64_t image : sites_.at(sites_path + "/image/value").read_integers(k, 1))
+    frame.sites.images.push_back(static_cast<std::int32_t>(image));
   return frame;
 }
 
@@ -174,6 +200,7 @@ std::vector<std::pair<std::string, Index>> TrajectoryReader::lengths() const {
   for (const auto& [name, column] : columns_) {
     all.emplace_back(fmt::format("{}/{}/value", particles_path, name), column.rows());
   }
+  for (const auto& [name, dataset] : sites_) all.emplace_back(name, dataset.rows());
   if (digests_) all.emplace_back(frame_digests_path, digests_->rows());
   return all;
 }

@@ -29,8 +29,10 @@ constexpr double slack = 2.2;
 constexpr double rounding_of_doubles = 1e-9;
 /// Whether images three edges away can come into range.
 bool reaches_far(double range, double edge) { return range > 0.75 * edge; }
-/// A record far from all others, whose squared distances are numbers.
-constexpr double nowhere = 1e140;
+/// How far a record stands from all others that is nobody's, of the extent of these and the range; and at most, so that
+/// squares of distances are numbers [length]. (Further out, high powers of the distance are too small for numbers, and
+/// processors take their time over these.)
+constexpr double nowhere = 0x1p20, nowhere_at_most = 1e140;
 /// The same in whole numbers: the box and its images take up less than half of them, around 0.
 constexpr std::int32_t whole_nowhere = std::numeric_limits<std::int32_t>::min();
 
@@ -163,6 +165,8 @@ void NeighborList::search(const ParticleSystem<double>& s, double moved, Numbers
   while (!find_all()) {
   }
   shell_ = 0;
+  static std::atomic<std::uint64_t> editions{0};
+  edition_ = ++editions;
   ++statistics_.searches;
   statistics_.skin = skin_;
   statistics_.pairs = s.size() > 0 ? static_cast<double>(*used_) / static_cast<double>(s.size()) : 0;
@@ -319,7 +323,11 @@ void NeighborList::lay_out(const ParticleSystem<double>& s) {
     ghosts_.push_back({static_cast<std::int32_t>(r), record_of_[at(owner)], shift_[at(point)]});
     if (!excluded_.empty()) next_image_[at(r)] = std::exchange(image_of_[at(owner)], static_cast<std::int32_t>(r));
   }
-  for (int k = 0; k < 3; ++k) records_[at(4 * count + k)] = nowhere;
+  double extent = laid_for_;
+  for (Index r = 0; r < count; ++r) {
+    for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, std::abs(coordinate(r, k)));
+  }
+  for (int k = 0; k < 3; ++k) records_[at(4 * count + k)] = std::min(nowhere * extent, nowhere_at_most);
   for (int k = 0; k < 3 && keep_whole_; ++k) whole_records_[at(4 * count + k)] = whole_nowhere;
   set_type(count, 0);
 }

@@ -70,6 +70,13 @@ class NeighborList {
     return {particles_.data() + group_size * g, lanes_.data() + group_size * g,
             entries_.data() + row_begin_[from].begin, row_begin_[from].rows[static_cast<std::size_t>(shell_)]};
   }
+  /// Rows of a group up to a shell, and the shell up to which `group` hands them out.
+  Index rows(Index g, int shell) const {
+    return row_begin_[static_cast<std::size_t>(g)].rows[static_cast<std::size_t>(shell)];
+  }
+  int shell() const { return shell_; }
+  /// Of the last search, for what is made of it: no two searches of any lists have the same; 0: there was none.
+  std::uint64_t edition() const { return edition_; }
   /// Records, shape (records, 4): x, y, z [length] relative to the middle of the box, and in the
   /// place of a fourth number the type as std::int64_t.
   const double* records() const { return records_.data(); }
@@ -150,6 +157,7 @@ class NeighborList {
   std::uint64_t version_ = 0;                ///< of the positions it was brought up to
   std::array<std::uint64_t, 2> versions_{};  ///< and of those in the records of either numbers
   std::int64_t age_ = 0;                     ///< updates since the last search
+  std::uint64_t edition_ = 0;                ///< of the last search
   Index crowded_ = -1;                       ///< see `crowded`
   int shell_ = 0;                            ///< the outermost that can have come into range since
 

@@ -2,8 +2,10 @@
 /// Jacobi's elliptic functions and elliptic integrals over any number type, as free bodies that turn need them.
 ///
 /// The parameter is m = k^2, given by its complement m1 = 1 - m > 0 as well where it matters: beside m = 1 that is what
-/// must be known to all digits.
+/// must be known to all digits. The functions of dual numbers and K have derivatives in both arguments; integrals of
+/// the third kind have none that count.
 
+#include "numbers/dual.hpp"
 #include "numbers/real.hpp"
 #include "numbers/small_angle.hpp"
 
@@ -13,6 +15,21 @@
 #include <limits>
 
 namespace noether {
+
+namespace detail {
+
+/// Whether a number carries derivatives, and what its values are made of.
+template <class Real> struct DualOf {
+  static constexpr bool is = false;
+  using Limits = std::numeric_limits<Real>;
+};
+template <class Real, std::size_t n> struct DualOf<Dual<Real, n>> {
+  static constexpr bool is = true;
+  using Limits = typename DualOf<Real>::Limits;
+};
+template <class Real> using LimitsOf = typename DualOf<Real>::Limits;
+
+}  // namespace detail
 
 /// sn u, cn u, dn u.
 template <class Real> struct JacobiFunctions { Real sn, cn, dn; };
@@ -63,7 +80,7 @@ template <class Real> JacobiFunctions<Real> jacobi_functions(const Real& u, cons
 template <class Real> Real complete_elliptic(const Real& m1) {
   using std::atan2, std::fabs, std::sqrt;
   Real a(1), b = sqrt(m1);
-  const Real near_enough = sqrt(std::numeric_limits<Real>::epsilon()) / Real(16);
+  const Real near_enough = Real(sqrt(detail::LimitsOf<Real>::epsilon())) / Real(16);
   for (int k = 0; k < 16 && fabs(a - b) > near_enough * a; ++k) {
     const Real mean = (a + b) / Real(2);
     b = sqrt(a * b);
@@ -79,7 +96,7 @@ template <class Real> Real carlson_rc(const Real& e) {
   using std::atan2, std::sqrt;
   if (e < Real(1e-5)) {
     Real sum(0);
-    const int terms = std::numeric_limits<Real>::digits > 60 ? 8 : 4;
+    const int terms = LimitsOf<Real>::digits > 60 ? 8 : 4;
     for (int k = terms - 1; k >= 0; --k) sum = Real(1) / Real(2 * k + 1) - e * sum;
     return sum;
   }
@@ -100,7 +117,7 @@ template <class Real> Real carlson_rj(Real x, Real y, Real p) {
   const Real dx = first - x, dy = first - y, dz = first - z;
   // Terms up to degree 7: what is left out is of degree 8, below a quarter of the rounding unit.
   using std::pow;
-  static const Real smallest = pow(std::numeric_limits<Real>::epsilon() / Real(4), Real(1) / Real(8));
+  static const Real smallest = pow(Real(detail::LimitsOf<Real>::epsilon()) / Real(4), Real(1) / Real(8));
   Real reach = max(max(fabs(dx), fabs(dy)), max(fabs(dz), fabs(first - p))) / smallest;
   Real a = first, scale(1), sum(0);
   for (int k = 0; k < 64 && reach >= a; ++k) {
@@ -127,6 +144,26 @@ template <class Real> Real carlson_rj(Real x, Real y, Real p) {
                       E2 * E2 * E2 / Real(16) + Real(3) * E3 * E3 / Real(40) + Real(3) * E2 * E4 / Real(20) +
                       Real(45) * E2 * E2 * E3 / Real(272) - Real(9) * (E3 * E4 + E2 * E5) / Real(68);
   return scale * series / (a * sqrt(a)) + Real(6) * sum;
+}
+
+/// The functions and their derivatives in u and m1, for |u| <= K. With u kept, the amplitude changes with m1 by dn/2
+/// times int_0^u sn^2/dn^2 dw = sn^3/3 R_D(cn^2, 1, dn^2), all of whose terms have one sign.
+/// @source Carlson1995
+template <class Value, std::size_t n>
+JacobiFunctions<Dual<Value, n>> jacobi_functions(const Dual<Value, n>& u, const Dual<Value, n>& m1) {
+  const JacobiFunctions<Value> at = jacobi_functions<Value>(u.value, m1.value);
+  const Value dn2 = at.dn * at.dn, over = Value(1) / dn2;
+  const Value by_m1 =
+      at.sn * at.sn * at.sn / Value(6) * carlson_rj<Value>(at.cn * at.cn * over, over, Value(1)) * over / at.dn;
+  JacobiFunctions<Dual<Value, n>> all{at.sn, at.cn, at.dn};
+  for (std::size_t k = 0; k < n; ++k) {
+    const Value amplitude = at.dn * (u.slope[k] + by_m1 * m1.slope[k]);
+    all.sn.slope[k] = at.cn * amplitude;
+    all.cn.slope[k] = -at.sn * amplitude;
+    all.dn.slope[k] =
+        (at.cn * all.cn.slope[k] + m1.value * at.sn * all.sn.slope[k] + m1.slope[k] * at.sn * at.sn / Value(2)) / at.dn;
+  }
+  return all;
 }
 
 /// The integral of the third kind, int_0^u dw/(1 - n sn^2 w) for n <= 0 and |u| <= K, from the functions at u.

@@ -127,7 +127,7 @@ ParticleSystem<double> from_bodies(TableReader& reader, const std::filesystem::p
                                    std::vector<std::string>& warnings) {
   const bool file = reader.has("bodies"), frame = are_of_a_frame(reader, folder);
   if (frame && !reader.has("body") && !reader.has("rigid_body")) {  // so nobody has a passage at a date
-    reader.expect_only({"bodies", "bodies_sha256", "elements", "frame", "box", "exclusions"});
+    reader.expect_only({"bodies", "bodies_sha256", "elements", "frame", "box", "exclusions", "molecules"});
   } else if (frame || file) {
     reader.expect_only(
         {"bodies", "bodies_sha256", "epoch", "elements", "body", "rigid_body", "frame", "box", "exclusions"});
@@ -223,7 +223,7 @@ void read_frame(TableReader& reader, ParticleSystem<double>& s, bool of_a_frame,
   effective.put("frame", SceneValue::of(frame, reader.line("frame")));
 }
 
-/// `molecules = "rigid"`: those of a structure or a builder become rigid bodies. @throws SceneError
+/// `molecules = "rigid"`: those of a structure, or of a frame of atoms, become rigid bodies. @throws SceneError
 void read_molecules(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective) {
   if (!reader.has("molecules")) return;
   const std::string text = reader.text("molecules");
@@ -232,6 +232,10 @@ void read_molecules(TableReader& reader, ParticleSystem<double>& s, SceneValue& 
   }
   if (reader.has("exclusions")) {
     reader.fail("exclusions", "exclusions name atoms, which rigid molecules no longer have; take exclusions out");
+  }
+  if (s.bodies() != nullptr) {
+    reader.fail("molecules",
+                fmt::format("the particles of {} are rigid bodies already; take molecules out", reader.text("bodies")));
   }
   try {
     s = make_rigid(s);
@@ -282,7 +286,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
   TableReader own(context, table, "[particles]", "particles");
   ParticleSystem<double> s = reader.has("structure") ? read_structure_particles(own, folder, effective, warnings)
                                                      : from_bodies(own, folder, effective, warnings);
-  if (reader.has("structure")) read_molecules(own, s, effective);
+  if (reader.has("structure") || are_of_a_frame(reader, folder)) read_molecules(own, s, effective);
   if (!reader.has("structure")) {
     const auto box = read_box(own, effective);
     // A box that particles of run.h5 have already would only count their images anew.

@@ -281,7 +281,8 @@ MethodTraits claimed_traits(const KnownMethod& known) {
   // Of a regular orbit: near-by integrals exist for symplectic maps, and for reversible ones too.
   // Methods for gravity alone are Gauss's, but for errors far below those of their steps.
   const bool nearly = known.info != nullptr && known.info->gravity_only;
-  traits.energy = claims.symplectic || claims.reversible || nearly ? EnergyError::bounded : EnergyError::drifts;
+  const bool bounded = claims.symplectic || claims.reversible || nearly;
+  traits.energy = claims.energy_exact ? EnergyError::kept : bounded ? EnergyError::bounded : EnergyError::drifts;
   const double limit = known.scheme != nullptr ? known.scheme->stability_limit : known.info->stability_limit;
   if (!std::isnan(limit)) traits.stability_limit = limit;
   if (known.scheme != nullptr) {

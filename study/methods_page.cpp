@@ -26,7 +26,8 @@ cells differ from its claims ends with them in square brackets.
 - **S**, symplectic: M^T J M = J for the Jacobian M of 24 steps. **R**, reversible: 24 steps, velocities turned, 24
   steps lead back. **P**, **L**: momentum and angular momentum of three bodies stay, to rounding. All with steps of
   one length where there are any.
-- **energy** over 100 periods of a regular orbit of Henon and Heiles: its error is bounded, or drifts away.
+- **energy** over 100 periods of a regular orbit of Henon and Heiles: it is kept to rounding, its error is bounded, or
+  drifts away.
 - **steps**: "fixed", of one length; "own", chosen by the method.
 - **stable to**: the first h omega at which an oscillator grows by more than 1e-15 a step, within 2e-4. "never": it
   grows at every step, if slowly. "always": at none up to 12. "(solver)": beyond it the iteration of the method, to

@@ -129,6 +129,10 @@ Failure Adams<Real>::not_solved(double t, double h, double change, int iteration
                       name_, h, t, change, iterations, advice)};
 }
 
+template <class Real> void Adams<Real>::moved(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
+  if (have_rate_) f.rate(t, y, rates_.newest());
+}
+
 template <class Real> void Adams<Real>::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "step", h_);
   save_value(saved, prefix + "have_rate", have_rate_);

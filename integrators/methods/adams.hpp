@@ -30,6 +30,8 @@ template <class Real> class Adams final : public Method<Real> {
   MethodClaims claims() const override;
   void bind(const VectorField<Real>& f) override;
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  Memory memory() const override { return Memory::history; }
+  void moved(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

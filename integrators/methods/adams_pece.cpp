@@ -196,6 +196,17 @@ template <class Real> void AdamsPece<Real>::interpolate(VectorField<Real>& /*f*/
   }
 }
 
+/// A difference of any number is the newest rate less what does not depend on it.
+template <class Real> void AdamsPece<Real>::moved(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
+  if (known_ == 0) return;
+  Vector<Real>& rate = trial_[0];
+  f.rate(t, y, rate);
+  for (Index i = 0; i < y.size(); ++i) {
+    const Real change = rate[i] - d_[0][i];
+    for (std::size_t j = 0; j < known_; ++j) d_[j][i] += change;
+  }
+}
+
 template <class Real> void AdamsPece<Real>::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "order", k_);
   save_value(saved, prefix + "known", known_);

@@ -32,6 +32,8 @@ template <class Real> class AdamsPece final : public Method<Real> {
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   bool dense() const override { return true; }
   void interpolate(VectorField<Real>& f, const Real& theta, Vector<Real>& y) override;
+  Memory memory() const override { return Memory::history; }
+  void moved(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

@@ -59,6 +59,14 @@ template <class Real> void BackwardDifferences<Real>::append(std::size_t last) {
   }
 }
 
+template <class Real> void BackwardDifferences<Real>::replace(std::size_t last, const Vector<Real>& y) {
+  for (Index i = 0; i < y.size(); ++i) {
+    const Real change = y[i] - d_[0][i];
+    for (std::size_t j = 1; j <= last; ++j) d_[j][i] += change;
+  }
+  d_[0] = y;
+}
+
 template <class Real> void BackwardDifferences<Real>::save(SavedState& saved, const std::string& prefix) const {
   std::vector<Real> all;
   for (const auto& d : d_) all.insert(all.end(), d.data(), d.data() + d.size());
@@ -257,6 +265,10 @@ template <class Real> void Bdf<Real>::interpolate(VectorField<Real>& /*f*/, cons
   d_.evaluate(order_, theta - Real(1), y);
 }
 
+template <class Real> void Bdf<Real>::moved(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& y) {
+  if (started_) d_.replace(order_ + 2, y);
+}
+
 template <class Real> void Bdf<Real>::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "started", started_);
   save_value(saved, prefix + "steps", std::vector<double>{h_, next_h_, factorized_for_});
@@ -366,6 +378,10 @@ template <class Real> StepResult FixedBdf<Real>::step(VectorField<Real>& f, cons
   }
   if (!made.failure) remember(y);
   return made;
+}
+
+template <class Real> void FixedBdf<Real>::moved(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& y) {
+  if (known_ > 0) d_.replace(known_, y);
 }
 
 template <class Real> void FixedBdf<Real>::save(SavedState& saved, const std::string& prefix) const {

@@ -25,6 +25,8 @@ template <class Real> class BackwardDifferences {
   /// Puts the next value behind the present ones, differences up to `last`: D_last is that of the new value already.
   void append(std::size_t last);
 
+  /// Takes another y for the last one: every difference up to number `last` changes by as much as it.
+  void replace(std::size_t last, const Vector<Real>& y);
   void save(SavedState& saved, const std::string& prefix) const;
   void load(const SavedState& saved, const std::string& prefix);
 
@@ -54,6 +56,8 @@ template <class Real> class Bdf final : public Method<Real> {
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   bool dense() const override { return true; }
   void interpolate(VectorField<Real>& f, const Real& theta, Vector<Real>& y) override;
+  Memory memory() const override { return Memory::history; }
+  void moved(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 
@@ -92,6 +96,8 @@ template <class Real> class FixedBdf final : public Method<Real> {
   MethodClaims claims() const override { return {.name = name_, .order = static_cast<int>(order_)}; }
   void bind(const VectorField<Real>& f) override;
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  Memory memory() const override { return Memory::history; }
+  void moved(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

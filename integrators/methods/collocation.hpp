@@ -9,6 +9,7 @@
 #include "integrators/methods/stage_system.hpp"
 #include "integrators/step_control.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -57,6 +58,10 @@ template <class Real> class Collocation final : public Method<Real> {
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   bool has_action() const override { return symplectic_ && !adaptive_ && second_order_; }
   Real action(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
+  Memory memory() const override { return Memory::none; }
+  void moved(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& /*y*/) override {
+    std::fill(low_.begin(), low_.end(), Real(0));
+  }
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

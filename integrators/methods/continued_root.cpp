@@ -56,6 +56,7 @@ bool ContinuedRoot<Real>::renew(StepEquations<Real>& equations, const Real& part
     matrix_.col(j) = (update_ - moved_value_) / (up - down);
     matrix_(j, j) += Real(1);
   }
+  stiff_ = matrix_.cwiseAbs().maxCoeff() > Real(2);
   return factors_.compute(matrix_);
 }
 
@@ -82,14 +83,18 @@ bool ContinuedRoot<Real>::correct(StepEquations<Real>& equations, const Real& pa
 }
 
 /// Newton's iteration from x, whose updates have to shrink to a quarter or less from the first one on.
+///
+/// A matrix serves on while updates shrink to a fiftieth. Of a stiff system it has to be that of the root to half of
+/// all digits: an older one turns rounding in a stiff direction into errors in a soft one, which look like no error.
 template <class Real>
 typename ContinuedRoot<Real>::Found ContinuedRoot<Real>::contract(StepEquations<Real>& equations, const Real& part,
                                                                   Vector<Real>& x, Evaluations& count) {
   constexpr int most = 60;
   const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
   const double smooth = 64 * rounding, rough = 1e6 * rounding;
-  double before = 0;
-  bool renews = true, fresh = false;
+  double before = 0, away = 0;  // update before this one, and the one that followed on the matrix
+  bool renews = true;
+  int idle = 0;
   for (int iteration = 0; iteration < most; ++iteration) {
     equations.map(part, x, value_);
     residual_ = value_ - x;
@@ -98,17 +103,18 @@ typename ContinuedRoot<Real>::Found ContinuedRoot<Real>::contract(StepEquations<
       ++count.jacobian;
       if (!renew(equations, part, x)) return Found::no;
     }
-    fresh = renews;
     if (!correct(equations, part, x)) return Found::unsolved;
     x += update_;
-    const double now = equations.size_of(part, update_, x).whole;
+    const double now = equations.size_of(part, update_, x).whole, shrinks = iteration == 0 ? 0 : now / before;
     if (!std::isfinite(now)) return Found::no;
-    const double shrinks = iteration == 0 ? 0 : now / before;
-    if (now == 0 || (iteration > 0 && now * shrinks <= rounding / 64)) return Found::yes;
-    const bool slow = shrinks > 0.25;
-    if (slow && (now <= smooth || (fresh && now <= rough))) return Found::yes;
-    if (slow && (fresh || iteration == 1) && now > rough) return Found::no;
-    renews = matrix_free_ || (iteration > 0 && shrinks > 0.02);
+    if (renews) away = now;
+    const bool fresh = renews, slow = shrinks > 0.25, serves = !stiff_ || away * away <= rounding;
+    if (now == 0) return Found::yes;
+    if (serves && iteration > 0 && (now * shrinks <= rounding / 64 || (slow && now <= smooth))) return Found::yes;
+    if (slow && now > rough && (fresh || iteration == 1)) return Found::no;
+    // Rounding of stiff equations lies above that of the numbers: updates that shrink no more with new matrices are it.
+    if (slow && fresh && ++idle == 3) return Found::yes;
+    renews = matrix_free_ || !serves || shrinks > 0.02;
     before = now;
   }
   return Found::no;

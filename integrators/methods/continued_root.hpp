@@ -50,6 +50,7 @@ template <class Real> class ContinuedRoot {
   std::optional<Failure> follow(StepEquations<Real>& equations, Vector<Real>& x, double h, Evaluations& count);
 
   bool matrix_free_ = false;
+  bool stiff_ = false;  ///< the matrix is far from the identity
   DenseFactors<Real> factors_;
   Matrix<Real> matrix_;
   Vector<Real> value_, residual_, update_, moved_, moved_value_, trial_, root_, before_;

@@ -34,34 +34,92 @@ template <class Real> Real missing_part(const Real& missing, const Real& scale, 
   return abs(missing) <= rounding * scale || !(square > Real(0)) ? Real(0) : Real(missing / square);
 }
 
+/// Work arrays of a step, so that none allocates any.
+template <class Real> struct DisplacementWork { Vector<Real>&middle, &way, &end; };
+
+/// Gonzalez's mean force of particles.
+template <class Real> class GonzalezForce final : public MeanForce<Real> {
+ public:
+  /// @param about_center  whether the displacements are those about that of the center of mass
+  GonzalezForce(VectorField<Real>& f, const Real& t, const Vector<Real>& y, const Vector<Real>& masses,
+                bool about_center, DisplacementWork<Real> work)
+      : f_(f),
+        t_(t),
+        energy_(f, t, true),
+        masses_(masses),
+        about_center_(about_center),
+        work_(work),
+        before_(energy_(y)) {}
+
+  void between(const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) override {
+    using std::abs;
+    work_.middle = (y0 + y1) / Real(2);
+    f_.acceleration(t_, work_.middle, a);
+    const Real after = energy_(y1);
+    const Index n = masses_.size();
+    Vector<Real>& moved = work_.way;
+    moved = y1.head(n) - y0.head(n);
+    const auto [done, size] = sums_over<Real, 2>(n, [&](Index i) {
+      const Real part = masses_[i] * a[i] * moved[i];
+      return std::array<Real, 2>{part, abs(part)};
+    });
+    if (about_center_) take_mean_from(moved);
+    const Real square = sum_over<Real>(n, [&](Index i) { return masses_[i] * moved[i] * moved[i]; });
+    const Real factor = missing_part(Real(before_ - after - done), Real(abs(before_) + abs(after) + size), square);
+    for (Index i = 0; i < n; ++i) {
+      if (masses_[i] > Real(0)) a[i] += factor * moved[i];
+    }
+  }
+
+ private:
+  void take_mean_from(Vector<Real>& moved) const {
+    const Index n = moved.size() / 3;
+    for (Index begin = 0; begin < moved.size(); begin += n) {
+      const auto [mass, moment] = sums_over<Real, 2>(n, [&](Index i) {
+        return std::array<Real, 2>{masses_[begin + i], masses_[begin + i] * moved[begin + i]};
+      });
+      if (mass > Real(0)) moved.segment(begin, n).array() -= moment / mass;
+    }
+  }
+
+  VectorField<Real>& f_;
+  const Real& t_;
+  CountedEnergy<Real> energy_;
+  const Vector<Real>& masses_;
+  bool about_center_;
+  DisplacementWork<Real> work_;
+  Real before_;
+};
+
 /// The equations of the mean rate k of a step of a Hamiltonian system, y1 = y + h k, k = J G(y, y1).
 template <class Real> class GonzalezEquations final : public StepEquations<Real> {
  public:
-  GonzalezEquations(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h)
-      : f_(f), t_(t), y_(y), h_(h), energy_(f, t, false), before_(energy_(y)) {}
+  GonzalezEquations(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h, DisplacementWork<Real> work)
+      : f_(f), t_(t), y_(y), h_(h), energy_(f, t, false), work_(work), before_(energy_(y)) {}
 
   void map(const Real& part, const Vector<Real>& k, Vector<Real>& out) override {
     using std::abs;
     const Index n = y_.size() / 2;
-    way_ = part * Real(h_) * k;
-    end_ = y_ + way_;
-    f_.rate(t_, Vector<Real>(y_ + way_ / Real(2)), out);
+    Vector<Real>& way = work_.way;
+    way = part * Real(h_) * k;
+    work_.end = y_ + way;
+    work_.middle = y_ + way / Real(2);
+    f_.rate(t_, work_.middle, out);
     // grad H = (-p', q') of the middle.
-    const auto [work, size] = sums_over<Real, 2>(n, [&](Index i) {
-      const Real q = -out[n + i] * way_[i], p = out[i] * way_[n + i];
-      return std::array<Real, 2>{q + p, abs(q) + abs(p)};
+    const auto [done, size, square] = sums_over<Real, 3>(n, [&](Index i) {
+      const Real q = -out[n + i] * way[i], p = out[i] * way[n + i];
+      return std::array<Real, 3>{q + p, abs(q) + abs(p), way[i] * way[i] + way[n + i] * way[n + i]};
     });
-    const Real square = sum_over<Real>(2 * n, [&](Index i) { return way_[i] * way_[i]; });
-    const Real after = energy_(end_);
-    const Real factor = missing_part(Real(after - before_ - work), Real(abs(before_) + abs(after) + size), square);
+    const Real after = energy_(work_.end);
+    const Real factor = missing_part(Real(after - before_ - done), Real(abs(before_) + abs(after) + size), square);
     for (Index i = 0; i < n; ++i) {
-      out[i] += factor * way_[n + i];
-      out[n + i] -= factor * way_[i];
+      out[i] += factor * way[n + i];
+      out[n + i] -= factor * way[i];
     }
   }
   UpdateSize size_of(const Real& part, const Vector<Real>& update, const Vector<Real>& k) override {
-    end_ = y_ + part * Real(h_) * k;
-    return update_size(update.data(), static_cast<double>(part) * h_, y_.data(), end_.data(), y_.size());
+    work_.end = y_ + part * Real(h_) * k;
+    return update_size(update.data(), static_cast<double>(part) * h_, y_.data(), work_.end.data(), y_.size());
   }
   Real reach(const Real& part, const Vector<Real>& /*k*/) const override {
     using std::abs;
@@ -75,8 +133,8 @@ template <class Real> class GonzalezEquations final : public StepEquations<Real>
   const Vector<Real>& y_;
   double h_;
   CountedEnergy<Real> energy_;
+  DisplacementWork<Real> work_;
   Real before_;
-  Vector<Real> way_, end_;
 };
 
 /// The equations of one coordinate of particles, or of one coordinate and its momentum, while all others stand. Of
@@ -161,7 +219,7 @@ template <class Real> class CoordinateEquations final : public StepEquations<Rea
     return {(above - below) / (up - down), after};
   }
 
-  static Real largest_of(const Vector<Real>& values) {
+  template <class Values> static Real largest_of(const Values& values) {
     const Real most = values.cwiseAbs().maxCoeff();
     return most > Real(0) ? most : Real(1);
   }
@@ -193,65 +251,27 @@ template <class Real> void GonzalezMethod<Real>::bind(const VectorField<Real>& f
   require_energy(name_, f);
   const FieldClaims field = f.claims();
   second_order_ = field.second_order;
-  keeps_momentum_ = field.keeps_momentum && f.particles() > 0;
-  middle_.resize(f.size());
+  about_center_ = field.keeps_momentum && f.particles() > 0;
+  for (Vector<Real>* v : {&middle_, &way_, &end_, &rate_}) v->resize(f.size());
   if (!second_order_) return root_.bind(f.size(), form_);
   masses_ = f.masses();
   step_.bind(f, form_);
 }
 
-/// A displacement of particles about that of their center of mass, where the forces keep the momentum.
-template <class Real> Vector<Real> GonzalezMethod<Real>::without_mean(const Vector<Real>& displacement) const {
-  Vector<Real> about = displacement;
-  if (!keeps_momentum_) return about;
-  const Index n = displacement.size() / 3;
-  for (Index begin = 0; begin < displacement.size(); begin += n) {
-    const auto [mass, moment] = sums_over<Real, 2>(n, [&](Index i) {
-      return std::array<Real, 2>{masses_[begin + i], masses_[begin + i] * displacement[begin + i]};
-    });
-    if (mass > Real(0)) about.segment(begin, n).array() -= moment / mass;
-  }
-  return about;
-}
-
-template <class Real>
-std::optional<Failure> GonzalezMethod<Real>::step_of_particles(VectorField<Real>& f, const Real& t, Vector<Real>& y,
-                                                               double h) {
-  using std::abs;
-  const CountedEnergy<Real> energy(f, t, true);
-  const Real before = energy(y);
-  const Index n = masses_.size();
-  const MeanForce<Real> between = [&](const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) {
-    middle_ = (y0 + y1) / Real(2);
-    f.acceleration(t, middle_, a);
-    const Vector<Real> moved = y1.head(n) - y0.head(n), about = without_mean(moved);
-    const Real after = energy(y1);
-    const auto [work, size, square] = sums_over<Real, 3>(n, [&](Index i) {
-      const Real part = masses_[i] * a[i] * moved[i];
-      return std::array<Real, 3>{part, abs(part), masses_[i] * about[i] * about[i]};
-    });
-    const Real factor = missing_part(Real(before - after - work), Real(abs(before) + abs(after) + size), square);
-    for (Index i = 0; i < n; ++i) {
-      if (masses_[i] > Real(0)) a[i] += factor * about[i];
-    }
-  };
-  return step_.make(between, y, h, f.evaluations());
-}
-
-template <class Real>
-std::optional<Failure> GonzalezMethod<Real>::step_of_system(VectorField<Real>& f, const Real& t, Vector<Real>& y,
-                                                            double h) {
-  GonzalezEquations<Real> equations(f, t, y, h);
-  Vector<Real>& rate = middle_;
-  f.rate(t, y, rate);
-  if (auto failure = root_.solve(equations, rate, h, f.evaluations())) return failure;
-  y += Real(h) * rate;
-  return {};
-}
-
 template <class Real>
 StepResult GonzalezMethod<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  return {.h = h, .failure = second_order_ ? step_of_particles(f, t, y, h) : step_of_system(f, t, y, h)};
+  StepResult made{.h = h};
+  const DisplacementWork<Real> work{middle_, way_, end_};
+  if (second_order_) {
+    GonzalezForce<Real> force(f, t, y, masses_, about_center_, work);
+    made.failure = step_.make(force, y, h, f.evaluations());
+    return made;
+  }
+  GonzalezEquations<Real> equations(f, t, y, h, work);
+  f.rate(t, y, rate_);
+  made.failure = root_.solve(equations, rate_, h, f.evaluations());
+  if (!made.failure) y += Real(h) * rate_;
+  return made;
 }
 
 template <class Real> MethodClaims ItohAbeMethod<Real>::claims() const {

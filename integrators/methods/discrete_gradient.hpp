@@ -28,14 +28,10 @@ template <class Real> class GonzalezMethod final : public Method<Real> {
   void load(const SavedState& /*saved*/, const std::string& /*prefix*/) override {}
 
  private:
-  std::optional<Failure> step_of_particles(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h);
-  std::optional<Failure> step_of_system(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h);
-  Vector<Real> without_mean(const Vector<Real>& displacement) const;
-
   std::string_view name_;
   std::optional<JacobianForm> form_;
-  bool second_order_ = false, keeps_momentum_ = false;
-  Vector<Real> masses_, middle_;
+  bool second_order_ = false, about_center_ = false;
+  Vector<Real> masses_, middle_, way_, end_, rate_;
   MeanForceStep<Real> step_;
   ContinuedRoot<Real> root_;
 };

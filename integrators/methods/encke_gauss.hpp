@@ -63,6 +63,7 @@ class EnckeGauss final : public Method<double> {
   bool dense() const override { return true; }
   void interpolate(VectorField<double>& f, const double& theta, Vector<double>& y) override;
   const Vector<double>* interpolated_low_words() const override { return &inside_low_; }
+  Memory memory() const override { return Memory::none; }
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

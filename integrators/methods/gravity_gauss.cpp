@@ -344,6 +344,14 @@ double GravityGauss::action(VectorField<double>& f, const double& t, const Vecto
   return general_.action(f, t, y);
 }
 
+void GravityGauss::moved(VectorField<double>& f, const double& t, const Vector<double>& y) {
+  if (in_use_) {
+    std::fill(low_.begin(), low_.end(), 0.0);
+  } else {
+    general_.moved(f, t, y);
+  }
+}
+
 void GravityGauss::save(SavedState& saved, const std::string& prefix) const {
   if (!in_use_) {
     general_.save(saved, prefix);

@@ -42,6 +42,8 @@ class GravityGauss final : public Method<double> {
   StepResult step(VectorField<double>& f, const double& t, Vector<double>& y, double h) override;
   bool has_action() const override { return general_.has_action(); }
   double action(VectorField<double>& f, const double& t, const Vector<double>& y) override;
+  Memory memory() const override { return Memory::none; }
+  void moved(VectorField<double>& f, const double& t, const Vector<double>& y) override;
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

@@ -32,6 +32,7 @@ template <class Real> class History {
   void forget() { count_ = 0; }
   std::size_t count() const { return count_; }
   const Vector<Real>& operator[](std::size_t ago) const { return kept_[ago]; }
+  Vector<Real>& newest() { return kept_.front(); }
 
   /// The vector to be filled: it becomes the newest, and the oldest of a full history is lost.
   Vector<Real>& push() {

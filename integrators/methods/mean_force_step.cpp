@@ -10,12 +10,12 @@ namespace {
 /// The equations of u in a part of a step from y.
 template <class Real> class MeanForceEquations final : public StepEquations<Real> {
  public:
-  MeanForceEquations(const MeanForce<Real>& force, const Vector<Real>& y, double h, Vector<Real>& end)
+  MeanForceEquations(MeanForce<Real>& force, const Vector<Real>& y, double h, Vector<Real>& end)
       : force_(force), y_(y), h_(h), end_(end) {}
 
   void map(const Real& part, const Vector<Real>& u, Vector<Real>& out) override {
     place(part, u);
-    force_(y_, end_, out);
+    force_.between(y_, end_, out);
     const Real half = part * Real(h_) / Real(2);
     for (Index i = 0; i < u.size(); ++i) out[i] = half * out[i];
   }
@@ -46,7 +46,7 @@ template <class Real> class MeanForceEquations final : public StepEquations<Real
     }
   }
 
-  const MeanForce<Real>& force_;
+  MeanForce<Real>& force_;
   const Vector<Real>& y_;
   double h_;
   Vector<Real>& end_;
@@ -61,7 +61,7 @@ template <class Real> void MeanForceStep<Real>::bind(const VectorField<Real>& f,
 }
 
 template <class Real>
-std::optional<Failure> MeanForceStep<Real>::make(const MeanForce<Real>& force, Vector<Real>& y, double h,
+std::optional<Failure> MeanForceStep<Real>::make(MeanForce<Real>& force, Vector<Real>& y, double h,
                                                  Evaluations& count) {
   MeanForceEquations<Real> equations(force, y, h, end_);
   u_.setZero();

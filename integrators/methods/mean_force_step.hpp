@@ -4,13 +4,15 @@
 #include "integrators/method.hpp"
 #include "integrators/methods/continued_root.hpp"
 
-#include <functional>
-
 namespace noether {
 
-/// Accelerations between the positions of two states y = (q, v), the same for both directions; shape (size / 2).
-template <class Real>
-using MeanForce = std::function<void(const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a)>;
+/// Accelerations between two states.
+template <class Real> class MeanForce {
+ public:
+  virtual ~MeanForce() = default;
+  /// Accelerations a, shape (size / 2), between the positions of y0 and y1, y = (q, v), the same for both directions.
+  virtual void between(const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) = 0;
+};
 
 /// Solves for u, half of what the velocities change by:
 ///
@@ -25,7 +27,7 @@ template <class Real> class MeanForceStep {
   /// @throws SchemeMismatch  see `ContinuedRoot`
   void bind(const VectorField<Real>& f, std::optional<JacobianForm> form);
   /// y becomes the state a step of h later. @return nothing, or why there is none
-  std::optional<Failure> make(const MeanForce<Real>& force, Vector<Real>& y, double h, Evaluations& count);
+  std::optional<Failure> make(MeanForce<Real>& force, Vector<Real>& y, double h, Evaluations& count);
 
  private:
   ContinuedRoot<Real> root_;

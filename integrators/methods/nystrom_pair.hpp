@@ -20,6 +20,7 @@ template <class Real> class NystromPair final : public Method<Real> {
   void bind(const VectorField<Real>& f) override;
   double next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) override;
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  Memory memory() const override { return Memory::none; }
   void save(SavedState& saved, const std::string& prefix) const override { control_.save(saved, prefix + "control/"); }
   void load(const SavedState& saved, const std::string& prefix) override { control_.load(saved, prefix + "control/"); }
 

@@ -44,6 +44,7 @@ template <class Real> class Rosenbrock final : public Method<Real> {
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   bool dense() const override { return true; }
   void interpolate(VectorField<Real>& f, const Real& theta, Vector<Real>& y) override;
+  Memory memory() const override { return Memory::none; }
   void save(SavedState& saved, const std::string& prefix) const override { control_.save(saved, prefix + "control/"); }
   void load(const SavedState& saved, const std::string& prefix) override { control_.load(saved, prefix + "control/"); }
 

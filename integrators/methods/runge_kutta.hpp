@@ -21,6 +21,8 @@ template <class Real> class RungeKutta : public Method<Real> {
   void bind(const VectorField<Real>& f) override;
   double next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) override;
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  Memory memory() const override { return Memory::none; }
+  void moved(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& /*y*/) override { have_first_ = false; }
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

@@ -26,11 +26,24 @@ template <class Real> void SimoTarnowWong<Real>::bind(const VectorField<Real>& f
   step_.bind(f, form_);
 }
 
+namespace {
+
+/// The secants of a field.
+template <class Real> class SecantsOfField final : public MeanForce<Real> {
+ public:
+  SecantsOfField(VectorField<Real>& f, const Real& t) : f_(f), t_(t) {}
+  void between(const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) override { f_.secant(t_, y0, y1, a); }
+
+ private:
+  VectorField<Real>& f_;
+  const Real& t_;
+};
+
+}  // namespace
+
 template <class Real>
 StepResult SimoTarnowWong<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  const MeanForce<Real> secants = [&](const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) {
-    f.secant(t, y0, y1, a);
-  };
+  SecantsOfField<Real> secants(f, t);
   return {.h = h, .failure = step_.make(secants, y, h, f.evaluations())};
 }
 

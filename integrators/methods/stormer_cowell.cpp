@@ -104,6 +104,14 @@ template <class Real> void StormerCowell<Real>::set_up_sums(double h) {
   }
 }
 
+template <class Real> void StormerCowell<Real>::moved(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
+  if (pulls_.count() == 0) return;
+  y_.set(y);
+  f.acceleration(t, y, a_);
+  for (Index i = 0; i < a_.size(); ++i) pulls_.newest()[i] = h2_ * a_[i];
+  if (pulls_.count() == velocity_.size()) set_up_sums(h_);
+}
+
 template <class Real> void StormerCowell<Real>::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "step", h_);
   pulls_.save(saved, prefix + "pulls");

@@ -26,6 +26,8 @@ template <class Real> class StormerCowell final : public Method<Real> {
   }
   void bind(const VectorField<Real>& f) override;
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  Memory memory() const override { return Memory::history; }
+  void moved(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

@@ -4,6 +4,7 @@
 #include "forces/lennard_jones.hpp"
 
 #include "forces/check_gradient.hpp"
+#include "neighbors/neighbor_list.hpp"
 #include "numbers/parallel.hpp"
 #include "numbers/simd.hpp"
 #include "tests/support/catch.hpp"
@@ -229,6 +230,47 @@ TEST_CASE("tails of two types are closed integrals under either mixing", "[lenna
     // On a lattice all pairs of a distance are rounded to whole units the same way.
     CHECK(std::abs(lanes.energy - whole.energy) < 1e-11 * static_cast<double>(s.size()));
     CHECK(std::abs((lanes.virial - whole.virial).trace()) < 1e-11 * static_cast<double>(s.size()));
+  }
+}
+
+TEST_CASE("pairs of types that do not act change no bit of those that do, by old lists too", "[lennard_jones]") {
+  // As in water: one particle in three acts, on its like alone; and two types that act by one row, as by many.
+  for (const bool mixed : {false, true}) {
+    for (const std::vector<PairKind>& kinds :
+         {std::vector<PairKind>{{1, 1}, {0, 1}, {0, 0.5}}, std::vector<PairKind>{{1, 1}, {0, 1}, {1, 1}},
+          std::vector<PairKind>{{1, 1}, {0, 1}, {0.5, 1.1}}}) {
+      CAPTURE(mixed, kinds.back().epsilon);
+      ParticleSystem<double> s = liquid(4, 0.85, 1.5, 0.1), acting;
+      acting.set_box(s.box());
+      auto topology = std::make_shared<Topology>(), alone = std::make_shared<Topology>();
+      topology->pair_kinds = alone->pair_kinds = kinds;
+      std::vector<Index> which;
+      for (Index i = 0; i < s.size(); ++i) {
+        const auto type = static_cast<std::size_t>(i % 3);
+        topology->types.push_back(i % 3);
+        if (kinds[type].epsilon == 0) continue;
+        alone->types.push_back(i % 3);
+        which.push_back(i);
+        acting.add("", 1, s.positions()[i], s.velocities()[i]);
+      }
+      s.set_topology(topology);
+      acting.set_topology(alone);
+      const LennardJonesForce force{.cutoff = 2.5,
+                                    .cutoff_style = Cutoff::switch_c4,
+                                    .precision = mixed ? PairPrecision::mixed : PairPrecision::full};
+      Workspace list;
+      list.put(NeighborList(2.5, {.skin = 0.2}));
+      for (int n = 0; n < 20; ++n) {
+        s.advance_positions(0.01);
+        acting.advance_positions(0.01);
+        const Evaluated all = evaluated<double>(force, s, &list), those = evaluated<double>(force, acting);
+        REQUIRE(all.energy == those.energy);
+        REQUIRE(all.virial == those.virial);
+        Index k = 0;
+        for (const Index i : which) REQUIRE(all.a[i] == those.a[k++]);
+        for (Index i = 1; i < s.size(); i += 3) REQUIRE(norm2(all.a[i]) == 0);
+      }
+    }
   }
 }
 

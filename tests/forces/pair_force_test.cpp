@@ -200,6 +200,13 @@ TEST_CASE("bits of pair potentials depend on no neighbor list, thread or monitor
                             test::liquid(5, 0.85, 1, 0.15), 2.5);
 }
 
+TEST_CASE("a list that is some steps old gives pairs of two types the bits of a new one", "[pair_force][determinism]") {
+  auto force = pair_force(MorsePair{1.7, 4.5, 1.15}, 2.5, Cutoff::shifted_force);
+  force.first = "A";
+  force.second = "B";
+  test::check_old_lists(force, two_types(test::liquid(4, 0.85, 1.5, 0.1)), 2.5);
+}
+
 TEST_CASE("strong pairs are summed with care, and the strongest end the run by name", "[pair_force][extremes]") {
   ParticleSystem<double> s = test::liquid(2, 0.8, 1);
   const Vec3<double> x = s.positions()[3];

@@ -13,6 +13,8 @@
 #include "tests/support/files.hpp"
 
 #include <cmath>
+#include <cstring>
+#include <map>
 #include <memory>
 
 #if NOETHER_HDF5
@@ -89,6 +91,128 @@ TEST_CASE("XYZ shows the atoms of bodies where they are, with the velocities of 
   // A table keeps orientations and spins, a row a body.
   io::convert(folder / "run.h5", folder / "run.csv");
   CHECK(read_text(folder / "run.csv").find("orientation[3]") != std::string::npos);
+}
+
+/// A run of the mixture without forces, a frame each step.
+struct Tumbling {
+  Tumbling(const std::filesystem::path& file, bool sites, ParticleSystem<double> start = mixture())
+      : simulation(std::move(start), compose(turning(ForceField<double>(), {.rotor = Rotor::exact}), schemes::verlet),
+                   0.01),
+        writer(&simulation.every(1, io::TrajectoryWriter(file, {.scene_toml = "title = \"t\"\n", .sites = sites}))) {}
+
+  Simulation<double> simulation;
+  io::TrajectoryWriter* writer;
+};
+
+TEST_CASE("frames have the sites of bodies where they are asked for, and h5py finds them", "[io][rigid_bodies]") {
+  const ScratchFolder folder;
+  {
+    Tumbling with(folder / "run.h5", true), without(folder / "bare.h5", false);
+    REQUIRE(with.simulation.run(3).ok());
+    REQUIRE(without.simulation.run(3).ok());
+  }
+  CHECK(io::verify(folder / "run.h5").damaged.empty());
+  CHECK(io::info(folder / "run.h5").digest == io::info(folder / "bare.h5").digest);
+  const io::Hdf5File file = io::Hdf5File::open_to_read(folder / "run.h5");
+  CHECK_FALSE(io::Hdf5File::open_to_read(folder / "bare.h5").has("/particles/sites"));
+  CHECK(file.open("/particles/sites/position/value").shape() == std::vector<Index>{4, 9, 3});
+  CHECK(file.open("/particles/sites/particle").read_integers() ==
+        std::vector<std::int64_t>{3, 3, 7, 12, 12, 12, 40, 40, 40});
+  // What the file says of sites and what follows from its bodies are one, to the bit.
+  io::convert(folder / "run.h5", folder / "run.xyz");
+  io::convert(folder / "bare.h5", folder / "bare.xyz");
+  CHECK(read_text(folder / "run.xyz") == read_text(folder / "bare.xyz"));
+  const auto found = python_output("read_sites.py", {(folder / "run.h5").string()});
+  if (found) {
+    CHECK(*found ==
+          "N N ion OW HW HW OW HW HW\nspecies 3 3 4 1 2 2 1 2 2\n"
+          "charge 0.0 0.0 1.0 -0.8476 0.4238 0.4238 -0.8476 0.4238 0.4238\n");
+  }
+}
+
+TEST_CASE("a run that writes sites goes on with them, and what is changed in them is found", "[io][rigid_bodies]") {
+  const ScratchFolder folder;
+  SavedRun saved;
+  {
+    Tumbling whole(folder / "whole.h5", true);
+    REQUIRE(whole.simulation.run(4).ok());
+    Tumbling half(folder / "run.h5", true);
+    REQUIRE(half.simulation.run(2).ok());
+    saved = half.simulation.save();
+    REQUIRE(half.simulation.run(1).ok());  // a frame that is cut off again
+  }
+  {
+    Tumbling rest(folder / "run.h5", true);
+    rest.simulation.restore(saved);
+    REQUIRE(rest.simulation.run(2).ok());
+  }
+  CHECK(io::verify(folder / "run.h5").damaged.empty());
+  for (const char* name : {"position", "velocity", "image"}) {
+    const std::string path = std::string("/particles/sites/") + name + "/value";
+    const auto of = [&](const char* file) { return io::Hdf5File::open_to_read(folder / file).open(path); };
+    CHECK(of("run.h5").shape() == std::vector<Index>{5, 9, 3});
+    if (std::string(name) == "image") {
+      CHECK(of("run.h5").read_integers() == of("whole.h5").read_integers());
+    } else {
+      CHECK(of("run.h5").read_reals() == of("whole.h5").read_reals());
+    }
+  }
+  // A site that is elsewhere: the number of the last frame alone, whose bytes are found by their value.
+  std::string bytes = read_text(folder / "run.h5");
+  const std::vector<double> x =
+      io::Hdf5File::open_to_read(folder / "run.h5").open("/particles/sites/position/value").read_reals(4, 1);
+  std::string number(sizeof(double), '\0');
+  std::memcpy(number.data(), &x[4], sizeof(double));
+  const std::size_t at = bytes.find(number);
+  REQUIRE(at != std::string::npos);
+  bytes[at] = static_cast<char>(bytes[at] ^ 1);
+  write_text(folder / "run.h5", bytes);
+  const auto damaged = io::verify(folder / "run.h5").damaged;
+  REQUIRE(damaged.size() == 1);
+  CHECK(damaged[0].find("frame 4 at step 4") != std::string::npos);
+}
+
+TEST_CASE("a file from before it said what bodies are made of says so once its run goes on", "[io][rigid_bodies]") {
+  const ScratchFolder folder;
+  const ParticleSystem<double> now = mixture();
+  ParticleSystem<double> before = now;
+  before.set_bodies(nullptr);  // their columns are in such a file, and nothing else
+  std::map<std::string, SavedState> saved;
+  {
+    io::TrajectoryWriter writer(folder / "run.h5");
+    writer.begin(before);
+    writer.flush();
+    writer.save(saved["trajectory"], "state");
+  }
+  CHECK_FALSE(io::Hdf5File::open_to_read(folder / "run.h5").has("/noether/bodies"));
+  {
+    io::TrajectoryWriter writer(folder / "run.h5");
+    writer.load(saved["trajectory"], "state");
+    writer.begin(now);
+    writer.finish({});
+  }
+  CHECK(io::verify(folder / "run.h5").damaged.empty());
+  {
+    io::TrajectoryWriter writer(folder / "run.h5");
+    writer.load(saved["trajectory"], "state");
+    Simulation<double> one(now, compose(turning(ForceField<double>()), schemes::verlet), 0.01);
+    one.every(1, writer);
+    REQUIRE(one.run(1).ok());
+  }
+  CHECK(io::verify(folder / "run.h5").damaged.empty());
+  const io::FrameParticles found = io::read_frame_particles(folder / "run.h5", {.frame = 0});
+  CHECK_FALSE(found.lost_bodies);
+  REQUIRE(found.particles.bodies() != nullptr);
+  CHECK(*found.particles.bodies() == *now.bodies());
+}
+
+TEST_CASE("sites of bodies of one site each are refused", "[io][rigid_bodies]") {
+  const ScratchFolder folder;
+  ParticleSystem<double> s(unit_system("reduced"));
+  add_body(s, ellipsoid("rock", 1, {3, 2, 1}), {});
+  CHECK(error_of([&] {
+          io::write_one_frame(folder / "run.h5", s, 0, 0, {.sites = true});
+        }).find("no body has more than one") != std::string::npos);
 }
 
 TEST_CASE("bodies of which nothing more can be shown stay rows of their own", "[io][rigid_bodies]") {

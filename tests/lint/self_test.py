@@ -173,6 +173,14 @@ def symbol_failures():
     found = simd_symbols.problems_of(symbols, "avx2")
     if [problem.split("'")[1] for problem in found] != ["__gmon_start__", "int const& std::max<int>(int const&, int const&)", "noether::base::h()"]:
         yield f"simd_symbols: found {found}"
+    disassembly = """0000 <noether::detail::SimdLoop<&(void noether::detail::loop_over_pairs<noether::Wca, (noether::Cutoff)3>(x)), void (*)(x)>::avx512(x)>:
+      10:\tcall   20 <noether::detail::switched(double)>
+0020 <noether::detail::switched(double)>:
+      20:\tcall   30 <f()>
+"""
+    calls = simd_symbols.calls_of(disassembly)
+    if calls != ["the loop over pairs of noether::Wca calls 'noether::detail::switched(double)' at level avx512"]:
+        yield f"simd_symbols: found {calls}"
 
 
 if __name__ == "__main__":

@@ -86,7 +86,8 @@ struct Way {
 std::vector<Way> every_way() {
   std::vector<Way> ways;
   for (const MethodInfo* info : methods::all()) {
-    if (info->gravity_only) continue;
+    // What keeps the energy needs to know it of every force.
+    if (info->gravity_only || make_method<double>(*info, {})->claims().conservative_only) continue;
     MethodOptions options;
     if (info->fixed && info->adaptive) options.adaptive = false;
     if (info->fixed) ways.push_back({info, options});

@@ -222,7 +222,7 @@ TEST_CASE("stages are found on a stiff spring, at turning points too, where only
     CAPTURE(name);
     Simulation run(s, test::classical_over(forces, method(name, fixed_steps(name))), 0.01);
     auto& energy = run.every(10, Energy{});
-    const Outcome outcome = run.run(100'000);
+    const Outcome outcome = run.run(20'000);
     CAPTURE(to_text(outcome));
     CHECK(outcome.ok());
     CHECK(energy.worst() < 1);

@@ -81,7 +81,7 @@ double way_back(const MethodChoice& choice) {
 
 /// |det M - 1| of one step on a pendulum, q'' = -sin q, by central differences of width 1e-11 in 113 bits.
 double area_change(const MethodChoice& choice) {
-  test::Motion<Quad> f(1, [](const Quad&, const Vector<Quad>& y, Quad* a) { a[0] = -sin(y[0]); });
+  auto f = test::pendulum<Quad>();
   const Quad d = Quad(1e-11);
   Matrix<Quad> m(2, 2);
   for (Index k = 0; k < 2; ++k) {

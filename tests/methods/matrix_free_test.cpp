@@ -115,7 +115,9 @@ LinearMap<double> rotations(double most) {
 std::vector<std::string> methods_with_a_jacobian() {
   std::vector<std::string> names;
   for (const MethodInfo* info : methods::all()) {
-    if (info->takes(*linear_solver)) names.emplace_back(info->name);
+    if (!info->takes(*linear_solver)) continue;
+    // What keeps the energy serves no heat and no drag.
+    if (!make_method<double>(*info, {})->claims().conservative_only) names.emplace_back(info->name);
   }
   return names;
 }

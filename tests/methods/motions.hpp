@@ -12,6 +12,12 @@
 
 namespace noether::test {
 
+/// The energy of a motion of mass 1, and its secants: accelerations between q0 and q1 that do the work of its change.
+template <class Real> struct MotionEnergy {
+  std::function<Real(const Vector<Real>& y)> potential = {};
+  std::function<void(const Vector<Real>& y0, const Vector<Real>& y1, Real* a)> secant = {};
+};
+
 /// q'' = a(t, q), or with velocities q'' = a(t, q, v), given by a function that writes a.
 template <class Real> class Motion final : public VectorField<Real> {
  public:
@@ -20,10 +26,14 @@ template <class Real> class Motion final : public VectorField<Real> {
 
   Motion(Index half, Pull pull, bool velocity_dependent = false)
       : half_(half), velocity_dependent_(velocity_dependent), pull_(std::move(pull)) {}
+  Motion(Index half, Pull pull, MotionEnergy<Real> energy) : Motion(half, std::move(pull)) {
+    energy_ = std::move(energy);
+  }
 
   std::unique_ptr<VectorField<Real>> clone() const override { return std::make_unique<Motion>(*this); }
   FieldClaims claims() const override {
-    return {.name = "motion", .second_order = true, .velocity_dependent = velocity_dependent_};
+    return {
+        .name = "motion", .second_order = true, .velocity_dependent = velocity_dependent_, .energy = has_potential()};
   }
   std::string signature() const override { return "motion"; }
   void bind(const ParticleSystem<Real>& /*s*/) override {}
@@ -31,6 +41,14 @@ template <class Real> class Motion final : public VectorField<Real> {
   void gather(const ParticleSystem<Real>& /*s*/, Vector<Real>& /*y*/) const override {}
   void scatter(const Vector<Real>& /*y*/, ParticleSystem<Real>& /*s*/) const override {}
   EnergyTerms<Real> energy(const ParticleSystem<Real>& /*s*/) override { return {}; }
+  bool has_potential() const override { return static_cast<bool>(energy_.potential); }
+  Real potential(const Real& /*t*/, const Vector<Real>& y) override { return energy_.potential(y); }
+  Vector<Real> masses() const override { return Vector<Real>::Ones(half_); }
+  bool has_secant() const override { return static_cast<bool>(energy_.secant); }
+  void secant(const Real& /*t*/, const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) override {
+    a.resize(half_);
+    energy_.secant(y0, y1, a.data());
+  }
   void accelerations(const ParticleSystem<Real>& /*s*/, VectorColumn<Real>& /*a*/) override {}
 
  protected:
@@ -48,6 +66,7 @@ template <class Real> class Motion final : public VectorField<Real> {
   Index half_;
   bool velocity_dependent_;
   Pull pull_;
+  MotionEnergy<Real> energy_;
 };
 
 /// q'' = -w^2 q.
@@ -67,14 +86,42 @@ template <class Real> Vector<Real> henon_heiles_start() { return Vector<Real>::C
 
 /// q'' = -q / |q|^3 in the plane. With `velocity_dependent` it claims to depend on velocities, too.
 template <class Real> Motion<Real> kepler(bool velocity_dependent = false) {
-  return {2,
-          [](const Real&, const Vector<Real>& y, Real* a) {
-            using std::sqrt;
-            const Real r2 = y[0] * y[0] + y[1] * y[1], r3 = r2 * sqrt(r2);
-            a[0] = -y[0] / r3;
-            a[1] = -y[1] / r3;
-          },
-          velocity_dependent};
+  const auto distance = [](const Vector<Real>& y) -> Real {
+    using std::sqrt;
+    return sqrt(y[0] * y[0] + y[1] * y[1]);
+  };
+  const auto pull = [](const Real&, const Vector<Real>& y, Real* a) {
+    using std::sqrt;
+    const Real r2 = y[0] * y[0] + y[1] * y[1], r3 = r2 * sqrt(r2);
+    a[0] = -y[0] / r3;
+    a[1] = -y[1] / r3;
+  };
+  if (velocity_dependent) return {2, pull, true};
+  // 1/r1 - 1/r0 over r1^2 - r0^2 in closed form.
+  const auto secant = [distance](const Vector<Real>& y0, const Vector<Real>& y1, Real* a) {
+    const Real r0 = distance(y0), r1 = distance(y1), weight = Real(1) / (r0 * r1 * (r0 + r1));
+    a[0] = -weight * (y0[0] + y1[0]);
+    a[1] = -weight * (y0[1] + y1[1]);
+  };
+  return {2, pull,
+          MotionEnergy<Real>{[distance](const Vector<Real>& y) -> Real { return Real(-1) / distance(y); }, secant}};
+}
+/// A pendulum, q'' = -sin q.
+template <class Real> Motion<Real> pendulum() {
+  const auto pull = [](const Real&, const Vector<Real>& y, Real* a) {
+    using std::sin;
+    a[0] = -sin(y[0]);
+  };
+  const auto secant = [](const Vector<Real>& y0, const Vector<Real>& y1, Real* a) {
+    using std::sin;
+    const Real half = (y1[0] - y0[0]) / Real(2);
+    a[0] = -sin((y0[0] + y1[0]) / Real(2)) * (half == Real(0) ? Real(1) : Real(sin(half) / half));
+  };
+  const auto potential = [](const Vector<Real>& y) -> Real {
+    using std::cos;
+    return -cos(y[0]);
+  };
+  return {1, pull, MotionEnergy<Real>{potential, secant}};
 }
 /// At the pericenter of an orbit of semi-major axis 1.
 template <class Real> Vector<Real> kepler_start(const Real& e) {

@@ -94,7 +94,7 @@ bool is_reference(const MethodInfo& info) { return info.rtol < 1e-15; }
 TEST_CASE("bystanders do not dilute the tolerance", "[particle_scales]") {
   for (const MethodInfo* info : adaptive_methods()) {
     CAPTURE(info->name);
-    const double alone = comet_error(*info, 0), beside = comet_error(*info, 40);
+    const double alone = comet_error(*info, 0), beside = comet_error(*info, 12);
     CHECK(alone > 0);
     CHECK(beside <= 2 * alone + 1e-10);
     CHECK(alone < (is_reference(*info) ? 1e-10 : 0.05));

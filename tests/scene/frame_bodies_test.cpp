@@ -77,6 +77,38 @@ const std::string gravity_rest = one_planet.substr(one_planet.find("[hamiltonian
 
 }  // namespace
 
+TEST_CASE("molecules of another run go on as rigid bodies, where and as fast as their atoms",
+          "[scene][bodies][rigid]") {
+  const EarlierRun run(
+      "units = 'molecular'\n[particles]\ntype = 'water_box'\nmodel = 'spce'\nmolecules = 8\ntemperature = '300 K'\n"
+      "density = '0.1 g/cm^3'\nseed = 3\n[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\n"
+      "type = 'reaction_field'\ncutoff = '0.5 nm'\n[[hamiltonian.constraint]]\ntype = 'rigid_molecules'\n"
+      "[integrator]\nmethod = 'verlet'\nstep = '1 fs'\nsteps = 12\n");
+  const std::string rest =
+      "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'reaction_field'\ncutoff = '0.5 nm'\n"
+      "[integrator]\nmethod = 'verlet'\nstep = '1 fs'\nsteps = 12\n";
+  const Scene turning = run.scene("bodies = 'run.h5'\nmolecules = 'rigid'\n", rest);
+  const ParticleSystem<double>& bodies = turning.particles;
+  REQUIRE(bodies.size() == 8);
+  REQUIRE(bodies.bodies() != nullptr);
+  // Kinetic energies of atoms and of bodies are the same, and so are those of their charges.
+  const Scene atoms = run.scene("bodies = 'run.h5'\n", rest + "[[hamiltonian.constraint]]\ntype = 'rigid_molecules'\n");
+  Simulation<double> as_atoms = assemble(atoms), as_bodies = assemble(turning);
+  auto& of_atoms = as_atoms.every(1, Energy{});
+  auto& of_bodies = as_bodies.every(1, Energy{});
+  REQUIRE(as_atoms.run(0).ok());
+  REQUIRE(as_bodies.run(0).ok());
+  CHECK(of_atoms.scale().value() > 0);
+  CHECK(std::abs(of_bodies.total() - of_atoms.total()) < 1e-9 * of_atoms.scale().value());
+  // A run of bodies has none to make.
+  const EarlierRun again(
+      "units = 'molecular'\n[particles]\ntype = 'water_box'\nmodel = 'spce'\nmolecules = 8\n"
+      "density = '0.1 g/cm^3'\nseed = 3\nrigid_bodies = true\n" +
+      rest);
+  CHECK(again.refusal("bodies = 'run.h5'\nmolecules = 'rigid'\n", rest) ==
+        "2 scene.toml:4: the particles of run.h5 are rigid bodies already; take molecules out");
+}
+
 TEST_CASE("a scene starts from any frame of another run, with masses, types, charges and bonds", "[scene][bodies]") {
   const EarlierRun run = chain_run();
   const io::Frames frames = io::read_frames(run.folder / "run.h5");

@@ -1,0 +1,14 @@
+#pragma once
+/// What `explain` tells of methods that keep the energy.
+
+#include "engine/concepts.hpp"
+#include "scene/scene.hpp"
+
+#include <string>
+
+namespace noether {
+
+/// "keeps E and p; L not, because of henon_heiles"; empty where the energy is not kept at any step.
+std::string kept_text(const Scene& scene, const IntegratorClaims& claims);
+
+}  // namespace noether
