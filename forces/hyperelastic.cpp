@@ -1,5 +1,7 @@
 #include "forces/hyperelastic.hpp"
 
+#include "forces/tetrahedra_simd.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -43,6 +45,10 @@ IsotropicLaw IsotropicMaterial::law() const {
   if (!young_modulus || !poisson_ratio) return {material, lambda.value_or(0), mu.value_or(0)};
   const double shear = *young_modulus / (2 * (1 + *poisson_ratio));
   return {material, 2 * shear * *poisson_ratio / (1 - 2 * *poisson_ratio), shear};
+}
+
+bool detail::tetrahedra_in_lanes(const TetrahedronGroups& groups, Index from, Index to) {
+  return tetrahedron_kernels().forces(groups, from, to);
 }
 
 Failure detail::inverted_element(Index element, const std::array<Index, 4>& particles, double part,

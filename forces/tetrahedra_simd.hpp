@@ -2,22 +2,10 @@
 /// Tetrahedra of the built-in materials, eight side by side: the interface of `tetrahedra_simd.cpp`, compiled once per
 /// SIMD level.
 
+#include "forces/tetrahedron_row.hpp"
 #include "numbers/kernels_simd.hpp"
 
-#include <cstddef>
-#include <cstdint>
-
 namespace noether {
-
-/// Groups of eight elements (forces/mesh_elements.hpp), where their particles are, and where their forces go.
-struct TetrahedronGroups {
-  const std::int32_t* corners;  ///< shape (groups, 4, 8)
-  const double* shapes;         ///< shape (groups, 10, 8)
-  const double* x[3];           ///< of the particles
-  double* slots;                ///< shape (groups, 12, 8)
-  double half_lambda, mu;
-  bool neo_hookean;
-};
 
 struct TetrahedronKernels {
   /// Writes the forces of the groups [from, to) into their slots, with the bits that elements have one by one.

@@ -5,7 +5,7 @@
 #include "forces/materials.hpp"
 #include "forces/mesh_elements.hpp"
 #include "forces/secant.hpp"
-#include "forces/tetrahedra_simd.hpp"
+#include "forces/tetrahedron_row.hpp"
 #include "numbers/parallel.hpp"
 #include "numbers/select.hpp"
 #include "numbers/wide_sum.hpp"
@@ -23,6 +23,10 @@ namespace noether::detail {
 /// Why a run cannot go on with an element. @param part  of its volume at rest
 Failure inverted_element(Index element, const std::array<Index, 4>& particles, double part,
                          const std::vector<std::string>& names);
+
+/// Writes the forces of the groups [from, to) into their slots, with the bits that elements have one by one.
+/// @return  whether det F > 0 in all of them; the forces mean something only then
+bool tetrahedra_in_lanes(const TetrahedronGroups& groups, Index from, Index to);
 
 /// A deformation F, row by row, from the edges of a tetrahedron and their inverse at rest.
 template <class Real> struct Deformation {
@@ -129,7 +133,7 @@ template <class Real, class M> class TetrahedronLoop {
                                       law.lambda / 2,
                                       law.mu,
                                       law.kind == ElasticLaw::neo_hookean};
-    return tetrahedron_kernels().forces(groups, begin / group, (end + group - 1) / group);
+    return tetrahedra_in_lanes(groups, begin / group, (end + group - 1) / group);
   }
 
   /// The edges from the first corner of element k.

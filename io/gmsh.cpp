@@ -368,7 +368,7 @@ double length_of(const StructureOptions& options) {
   try {
     return parse_quantity("1 " + options.file_units, dimensions::length, *options.units);
   } catch (const Error&) {
-    throw Error(fmt::format("file_units = \"{}\" is not a unit of length{}, in which the numbers of a mesh stand",
+    throw Error(fmt::format("file_units = \"{}\" is not a unit of length{}, as a mesh needs one",
                             options.file_units, options.units->is_reduced() ? " of reduced units" : ""),
                 {.key = "file_units", .value = options.file_units});
   }

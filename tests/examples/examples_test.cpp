@@ -61,6 +61,7 @@ const std::vector<Example> all = {
     {"spin_orbit", spin_orbit::program, Length::slow, Bits::of_this_machine},
     {"template_project", template_project::program, Length::quick},
     {"tennis_racket", tennis_racket::program, Length::quick, Bits::of_this_machine},
+    {"tumbling_block", tumbling_block::program, Length::slow, Bits::of_this_machine, 20},
     {"two_phase_slab", two_phase_slab::program, Length::slow, Bits::of_this_machine, 100},
     {"water_box", water_box::program, Length::nightly, Bits::of_this_machine, 50},
 };

@@ -26,12 +26,15 @@
 #include "forces/gravity.hpp"
 #include "forces/gravity_of_bodies.hpp"
 #include "forces/henon_heiles.hpp"
+#include "forces/hyperelastic.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/linear_drag.hpp"
 #include "forces/on_sites.hpp"
 #include "forces/pair_potentials.hpp"
 #include "forces/sum.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
+#include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -60,6 +63,7 @@
 #include "numbers/elliptic.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/units.hpp"
+#include "scene/block.hpp"
 #include "scene/builders.hpp"
 #include "scene/constrained.hpp"
 #include "scene/run.hpp"
@@ -197,6 +201,9 @@ namespace examples::template_project {
 }
 namespace examples::tennis_racket {
 #include "examples/tennis_racket/main.cpp"
+}
+namespace examples::tumbling_block {
+#include "examples/tumbling_block/main.cpp"
 }
 namespace examples::two_phase_slab {
 #include "examples/two_phase_slab/main.cpp"

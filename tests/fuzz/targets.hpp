@@ -189,10 +189,11 @@ inline void take_structure(std::string_view bytes) {
   const io::StructureOptions with_script = {.units = &unit_system("reduced"),
                                             .coefficients = {as_file("structure.in", bytes)}};
   accepted([&] { check_topology(io::read_structure(chain_without_coefficients(), with_script)); });
-  const std::array<std::pair<const char*, io::StructureOptions>, 4> readings = {{
+  const std::array<std::pair<const char*, io::StructureOptions>, 5> readings = {{
       {"structure.data", {.units = &unit_system("reduced")}},
       {"structure.lmp", {.file_units = "real", .box = Box::open()}},
       {"structure.xyz", {}},
+      {"structure.msh", {.units = &unit_system("si"), .densities = {{"", 1000}}}},
       {"structure.gro",
        {.types = {{.type = "OW", .mass = 16}, {.type = "HW1", .mass = 1}, {.type = "HW2", .mass = 1}}}},
   }};
