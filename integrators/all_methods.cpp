@@ -18,7 +18,7 @@ std::span<const MethodInfo* const> all() {
     std::vector<const MethodInfo*> every;
     for (const auto& family :
          {runge_kutta_list(), collocation_list(), encke_list(), wide_gauss_list(), nystrom_list(), extrapolation_list(),
-          multistep_list(), diagonally_implicit_list(), newmark_list(), rosenbrock_list(), bdf_list()}) {
+          multistep_list(), diagonally_implicit_list(), newmark_list(), rosenbrock_list(), bdf_list(), hbvm_list()}) {
       for (const MethodInfo& info : family) every.push_back(&info);
     }
     return every;
@@ -45,7 +45,7 @@ const MethodInfo* find(std::string_view name) {
     const auto aliases = aliases_of(*info);
     if (std::find(aliases.begin(), aliases.end(), name) != aliases.end()) return info;
   }
-  return nullptr;
+  return find_hbvm(name);
 }
 
 }  // namespace methods
