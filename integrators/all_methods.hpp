@@ -25,7 +25,7 @@ std::vector<std::string> aliases_of(const MethodInfo& info);
 /// Names and aliases of all schemes and classical methods: what a misspelt name may have meant.
 std::vector<std::string> known_names();
 
-// The families, each in a file of its own below integrators/methods/.
+// The families, each in a file of its own below integrators/methods/, those on Lie groups below integrators/lie/.
 std::span<const MethodInfo> runge_kutta_list();
 std::span<const MethodInfo> collocation_list();
 std::span<const MethodInfo> encke_list();
@@ -37,6 +37,9 @@ std::span<const MethodInfo> diagonally_implicit_list();
 std::span<const MethodInfo> newmark_list();
 std::span<const MethodInfo> rosenbrock_list();
 std::span<const MethodInfo> bdf_list();
+std::span<const MethodInfo> rkmk_list();
+std::span<const MethodInfo> exponential_list();
+std::span<const MethodInfo> magnus_list();
 
 }  // namespace methods
 

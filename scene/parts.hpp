@@ -7,7 +7,7 @@
 #include "engine/any_force.hpp"
 #include "engine/simulation.hpp"
 #include "forces/sum.hpp"
-#include "integrators/first_order_system.hpp"
+#include "integrators/lie/group_system.hpp"
 #include "integrators/method.hpp"
 #include "scene/fields.hpp"
 
@@ -290,9 +290,10 @@ class Parts {
     return *this;
   }
 
-  /// Makes first-order system `S` known by the name it describes itself with; one of the same name is replaced.
+  /// Makes system `S` of first order, or on a group, known by the name it describes itself with; one of the same name
+  /// is replaced.
   template <class S>
-  requires FirstOrderSystem<S, double> Parts& add_system() {
+  requires SystemOf<S, double> Parts& add_system() {
     static_assert(Described<S>, "a system in a scene describes itself: static constexpr auto describe()");
     put(systems_, SystemKind{part_info<S>(), [](TableReader& reader) { return read_system<S>(reader); }});
     return *this;
@@ -459,9 +460,9 @@ class Parts {
       reader.fail(nullptr, "start", fmt::format("{} has no start; give start = [...]", reader.what()));
     }
     made.start = initial_state(system, std::move(values), *reader.context().units);
-    made.field = [system] { return std::make_unique<SystemMotion<S, double>>(system); };
-    if constexpr (FirstOrderSystem<S, Quad>) {
-      made.wide_field = [system] { return std::make_unique<SystemMotion<S, Quad>>(system); };
+    made.field = [system] { return field_of_system<double>(system); };
+    if constexpr (SystemOf<S, Quad>) {
+      made.wide_field = [system] { return field_of_system<Quad>(system); };
     }
     return made;
   }
