@@ -30,6 +30,7 @@
 #include "integrators/systems/prothero_robinson.hpp"
 #include "integrators/systems/rc_ladder.hpp"
 #include "integrators/systems/robertson.hpp"
+#include "integrators/systems/turning_frame.hpp"
 #include "integrators/tidal.hpp"
 #include "integrators/velocity_rescaling.hpp"
 #include "integrators/wisdom_holman.hpp"
@@ -165,6 +166,7 @@ Parts standard_parts() {
   parts.add_system<Lorenz>();
   parts.add_system<ProtheroRobinson>();
   parts.add_system<ForcedDampedOscillator>();
+  parts.add_system<TurningFrame>();
   parts.add_monitor<Energy>();
   parts.add_monitor<Momentum>();
   parts.add_monitor<AngularMomentum>();

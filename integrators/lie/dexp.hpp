@@ -16,6 +16,9 @@ constexpr int dexp_terms_for(int order) {
   return terms > 1 && terms % 2 == 1 ? terms - 1 : terms;
 }
 
+/// B_k/k! for k up to `most_dexp_terms`, B_k Bernoulli's numbers, B_1 = -1/2.
+Quad dexp_weight(int k);
+
 /// dexp^-1_u v = sum_(k <= terms) B_k/k! [u, [u, ... [u, v]]], k brackets in each term.
 template <class Real> class InverseDexp {
  public:

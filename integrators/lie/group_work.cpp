@@ -1,7 +1,9 @@
 #include "integrators/lie/group_work.hpp"
 
+#include "integrators/lie/graded_brackets.hpp"
 #include "integrators/lie/lie_field.hpp"
 #include "integrators/lie/rotations.hpp"
+#include "integrators/methods/explicit_tableaus.hpp"
 
 #include <memory>
 #include <string>
@@ -79,6 +81,12 @@ GroupWork counted_work(const MethodInfo& info, const MethodOptions& options) {
           .commutators = field.commutators};
 }
 
-GroupWork rkmk_work(const MethodInfo& info, const MethodOptions& options) { return counted_work(info, options); }
+GroupWork rkmk_work(const MethodInfo& info, const MethodOptions& options) {
+  GroupWork work = counted_work(info, options);
+  for (const tableaus::NamedTableau& table : tableaus::all_explicit()) {
+    if (info.name == "rkmk_" + std::string(table.name)) work.least_commutators = least_commutators(table.table());
+  }
+  return work;
+}
 
 }  // namespace noether

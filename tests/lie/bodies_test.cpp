@@ -1,4 +1,5 @@
-/// Methods on Lie groups over rigid bodies: tops against references of 28 digits, orders, what is kept, what is refused.
+/// Methods on Lie groups over rigid bodies: tops against references of 28 digits, orders, what is kept, what is
+/// refused.
 
 #include "forces/external_fields.hpp"
 #include "forces/linear_drag.hpp"
@@ -230,13 +231,11 @@ TEST_CASE("what methods on groups cannot do, they refuse", "[lie]") {
   CHECK(lie_refusal([] {
           Simulation sim(heavy_top(), test::classical_over(Gravity{}, method("rkmk_rk4")), 0.1);
         }).find("or lie() in the place of classical()") != std::string::npos);
-  CHECK(lie_refusal([] {
-          Simulation sim(test::outer_planets(), lie(weight_on_sites(), method("rkmk_rk4")), 0.1);
-        }) == "there are no rigid bodies to turn; add some, or use classical over the forces");
-  CHECK(lie_refusal([] {
-          Simulation sim(heavy_top(), lie(weight_on_sites(), method("magnus_4")), 0.1);
-        }) == "method 'magnus_4' is for Y' = A(t) Y on rotations only, but 'kinetic_potential' is no such field; use "
-              "'rkmk_dop853'");
+  CHECK(lie_refusal([] { Simulation sim(test::outer_planets(), lie(weight_on_sites(), method("rkmk_rk4")), 0.1); }) ==
+        "there are no rigid bodies to turn; add some, or use classical over the forces");
+  CHECK(lie_refusal([] { Simulation sim(heavy_top(), lie(weight_on_sites(), method("magnus_4")), 0.1); }) ==
+        "method 'magnus_4' is for Y' = A(t) Y on rotations only, but 'kinetic_potential' is no such field; use "
+        "'rkmk_dop853'");
   CHECK(lie_refusal([] {
           Simulation sim(heavy_top(), lie(test::on_sites(DragForce{{.rate = 1}}), method("rkmk_rk4")), 0.1);
         }).find("depends on velocities, which sites do not have") != std::string::npos);

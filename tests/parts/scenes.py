@@ -335,6 +335,8 @@ SYSTEMS = {
     "lorenz": system("type = 'lorenz'", step=0.01),
     "prothero_robinson": system("type = 'prothero_robinson'; lambda = -100", **STIFF),
     "forced_damped_oscillator": system("type = 'forced_damped_oscillator'"),
+    "turning_frame": system("type = 'turning_frame'; drive = 1.5", method="magnus_4", flow="rkmk_dormand_prince_5",
+                            rivals=("magnus_4", "magnus_2")),
 }
 
 
