@@ -13,8 +13,10 @@ namespace noether {
 
 namespace methods {
 
-/// Every classical method, once, family by family.
+/// Every classical method of forces and of systems of first order, once, family by family.
 std::span<const MethodInfo* const> all();
+/// Those that serve Y' = A(t) Y on rotations alone.
+std::span<const MethodInfo* const> of_rotations();
 
 /// The method of a name or an alias; null if there is none.
 const MethodInfo* find(std::string_view name);

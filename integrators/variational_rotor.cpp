@@ -29,12 +29,12 @@ template <class Real> class DiscreteTurn {
       if (!(square < Real(1))) return false;
       const Real w = root(Real(1) - square);
       const Vec3<Real> momentum(inertia_[0] * found[0], inertia_[1] * found[1], inertia_[2] * found[2]);
-      const Vec3<Real> rest = momentum * w + cross<Real>(found, momentum) - half_ * part;
+      const Vec3<Real> missing = momentum * w + cross<Real>(found, momentum) - half_ * part;
       const Mat3<Real> slope = slope_at(found, momentum, w);
       const Real volume = determinant(slope);
       // The way from the turn of 0 ends where it folds back.
       if (!(volume > Real(0))) return false;
-      const Vec3<Real> step = solved(slope, volume, rest);
+      const Vec3<Real> step = solved(slope, volume, missing);
       found -= step;
       const Real length = norm2(step);
       if (!(length > rounding * rounding * norm2(found))) return finish(found, z);

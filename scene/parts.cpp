@@ -187,7 +187,9 @@ Parts standard_parts() {
   parts.add_monitor<ShadowHamiltonian<double>>();
   parts.add_stop<Escape>();
   parts.add_stop<Collision>();
-  for (const MethodInfo* method : methods::all()) parts.add_method(*method);
+  for (const auto& list : {methods::all(), methods::of_rotations()}) {
+    for (const MethodInfo* method : list) parts.add_method(*method);
+  }
   return parts;
 }
 

@@ -74,7 +74,7 @@ namespace methods {
 namespace {
 
 template <const ExponentialTableau& (*table)(), class Real>
-std::unique_ptr<Method<Real>> products(const MethodInfo& info, const MethodOptions& /*options*/) {
+std::unique_ptr<Method<Real>> products_of(const MethodInfo& info, const MethodOptions& /*options*/) {
   return std::make_unique<ExponentialProducts<Real>>(info, table());
 }
 
@@ -84,8 +84,8 @@ template <const ExponentialTableau& (*table)()> MethodInfo product_method(Method
   info.order = table().order;
   info.evaluations = static_cast<int>(table().stages.size()) + 1;
   info.on_groups = true;
-  info.make = products<table, double>;
-  info.make_quad = products<table, Quad>;
+  info.make = products_of<table, double>;
+  info.make_quad = products_of<table, Quad>;
   info.group_work = counted_work;
   return info;
 }
@@ -105,7 +105,8 @@ std::span<const MethodInfo> exponential_list() {
            .summary = "order 4 by five stages and fifteen exponentials of single stages",
            .use = "comparison with published runs; commutator_free_4 takes a third of the exponentials",
            .source = "JackiewiczMarthinsenOwren2000",
-           .printed_digits = 16}),
+           .printed_digits = 16,
+           .stability_limit = 0}),
       product_method<tableaus::commutator_free_3>(
           {.name = "commutator_free_3",
            .summary = "order 3 by three stages and three exponentials, without commutators",

@@ -20,7 +20,7 @@ ExponentialProduct one_by_one(std::string_view row) {
   return product;
 }
 /// The same from weights of all stages in each exponential.
-ExponentialProduct together(std::initializer_list<std::string_view> exponentials, Quad c, int from = 0) {
+ExponentialProduct all_stages(std::initializer_list<std::string_view> exponentials, Quad c, int from = 0) {
   return {.from = from, .weights = rows(exponentials), .c = c};
 }
 
@@ -45,17 +45,17 @@ const ExponentialTableau& crouch_grossman_4() {
 
 const ExponentialTableau& commutator_free_3() {
   static const ExponentialTableau table{
-      .stages = {together({"1/3"}, Quad(1) / Quad(3)), together({"0 2/3"}, Quad(2) / Quad(3))},
-      .end = together({"-1/12 0 3/4"}, Quad(1), 1),
+      .stages = {all_stages({"1/3"}, Quad(1) / Quad(3)), all_stages({"0 2/3"}, Quad(2) / Quad(3))},
+      .end = all_stages({"-1/12 0 3/4"}, Quad(1), 1),
       .order = 3};
   return table;
 }
 
 const ExponentialTableau& commutator_free_4() {
-  static const ExponentialTableau table{
-      .stages = {together({"1/2"}, Quad(0.5)), together({"0 1/2"}, Quad(0.5)), together({"-1/2 0 1"}, Quad(1), 1)},
-      .end = together({"1/4 1/6 1/6 -1/12", "-1/12 1/6 1/6 1/4"}, Quad(1)),
-      .order = 4};
+  static const ExponentialTableau table{.stages = {all_stages({"1/2"}, Quad(0.5)), all_stages({"0 1/2"}, Quad(0.5)),
+                                                   all_stages({"-1/2 0 1"}, Quad(1), 1)},
+                                        .end = all_stages({"1/4 1/6 1/6 -1/12", "-1/12 1/6 1/6 1/4"}, Quad(1)),
+                                        .order = 4};
   return table;
 }
 

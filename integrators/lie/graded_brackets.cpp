@@ -12,17 +12,17 @@ namespace noether {
 
 namespace {
 
-using Row = std::vector<Quad>;
-using Rows = std::vector<Row>;
+using WeightRow = std::vector<Quad>;
+using WeightRows = std::vector<WeightRow>;
 
 /// Below this a number is the rounding of printed coefficients, above it none is.
 bool is_none(const Quad& x) { return abs(x) < Quad(1e-18); }
 
-/// Rows in echelon form, one after the other.
+/// WeightRows in echelon form, one after the other.
 class Echelon {
  public:
   /// Takes a row in, if it is not a combination of those before. @return whether it is not
-  bool take(Row row) {
+  bool take(WeightRow row) {
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const Quad factor = row[pivots_[k]] / rows_[k][pivots_[k]];
       for (std::size_t i = 0; i < row.size(); ++i) row[i] -= factor * rows_[k][i];
@@ -37,8 +37,8 @@ class Echelon {
   int rank() const { return static_cast<int>(rows_.size()); }
 
   /// Vectors of length n that are orthogonal to all rows.
-  Rows orthogonal(std::size_t n) const {
-    Rows reduced = rows_;
+  WeightRows orthogonal(std::size_t n) const {
+    WeightRows reduced = rows_;
     for (std::size_t k = 0; k < reduced.size(); ++k) {  // so that each pivot stands alone
       const Quad size = reduced[k][pivots_[k]];
       for (Quad& x : reduced[k]) x /= size;
@@ -47,10 +47,10 @@ class Echelon {
         for (std::size_t i = 0; j != k && i < n; ++i) reduced[j][i] -= factor * reduced[k][i];
       }
     }
-    Rows all;
+    WeightRows all;
     for (std::size_t free = 0; free < n; ++free) {
       if (std::find(pivots_.begin(), pivots_.end(), free) != pivots_.end()) continue;
-      Row one(n, Quad(0));
+      WeightRow one(n, Quad(0));
       one[free] = Quad(1);
       for (std::size_t k = 0; k < reduced.size(); ++k) one[pivots_[k]] = -reduced[k][free];
       all.push_back(one);
@@ -59,38 +59,38 @@ class Echelon {
   }
 
  private:
-  Rows rows_;
+  WeightRows rows_;
   std::vector<std::size_t> pivots_;
 };
 
 /// Elementary weights of all rooted trees of so many nodes at each stage, by the number of nodes less one.
-std::vector<Rows> elementary_weights(const Tableau& table, int most) {
+std::vector<WeightRows> elementary_weights(const Tableau& table, int most) {
   const std::size_t s = table.stages();
-  const auto product = [&](const Row& v) {
-    Row out(s, Quad(0));
+  const auto product = [&](const WeightRow& v) {
+    WeightRow out(s, Quad(0));
     for (std::size_t i = 0; i < s; ++i) {
       for (std::size_t j = 0; j < table.a[i].size(); ++j) out[i] += table.a[i][j] * v[j];
     }
     return out;
   };
-  std::vector<Rows> weights = {{Row(s, Quad(1))}};
+  std::vector<WeightRows> weights = {{WeightRow(s, Quad(1))}};
   for (int nodes = 2; nodes <= most; ++nodes) {
-    Rows found;
-    const std::function<void(int, int, const Row&)> branch = [&](int left, int largest, const Row& root) {
+    WeightRows found;
+    const std::function<void(int, int, const WeightRow&)> branch = [&](int left, int largest, const WeightRow& root) {
       if (left == 0) {
         found.push_back(root);
         return;
       }
       for (int nodes_of_it = std::min(left, largest); nodes_of_it > 0; --nodes_of_it) {
-        for (const Row& subtree : weights[static_cast<std::size_t>(nodes_of_it) - 1]) {
-          const Row below = product(subtree);
-          Row joined(s);
+        for (const WeightRow& subtree : weights[static_cast<std::size_t>(nodes_of_it) - 1]) {
+          const WeightRow below = product(subtree);
+          WeightRow joined(s);
           for (std::size_t i = 0; i < s; ++i) joined[i] = root[i] * below[i];
           branch(left - nodes_of_it, nodes_of_it, joined);
         }
       }
     };
-    branch(nodes - 1, nodes - 1, Row(s, Quad(1)));
+    branch(nodes - 1, nodes - 1, WeightRow(s, Quad(1)));
     weights.push_back(std::move(found));
   }
   return weights;
@@ -98,24 +98,24 @@ std::vector<Rows> elementary_weights(const Tableau& table, int most) {
 
 /// Combinations of stages, each of the highest power of h that it can be.
 struct Graded {
-  Rows combinations;
+  WeightRows combinations;
   std::vector<int> powers;
 };
 
 Graded graded_combinations(const Tableau& table) {
   const std::size_t s = table.stages();
-  const std::vector<Rows> weights = elementary_weights(table, table.order);
-  std::vector<Rows> spaces;  // of power w and more, by w - 1
+  const std::vector<WeightRows> weights = elementary_weights(table, table.order);
+  std::vector<WeightRows> spaces;  // of power w and more, by w - 1
   Echelon conditions;
   for (int power = 1; power <= table.order + 1; ++power) {
     spaces.push_back(conditions.orthogonal(s));
     if (power > table.order) break;
-    for (const Row& weight : weights[static_cast<std::size_t>(power) - 1]) conditions.take(weight);
+    for (const WeightRow& weight : weights[static_cast<std::size_t>(power) - 1]) conditions.take(weight);
   }
   Graded graded;
   Echelon taken;
   for (int power = table.order + 1; power > 0; --power) {
-    for (const Row& one : spaces[static_cast<std::size_t>(power) - 1]) {
+    for (const WeightRow& one : spaces[static_cast<std::size_t>(power) - 1]) {
       if (!taken.take(one)) continue;
       graded.combinations.push_back(one);
       graded.powers.push_back(power);
@@ -164,9 +164,9 @@ class FreeAlgebra {
 };
 
 /// Stages as polynomials of the combinations: the inverse of these.
-std::vector<Polynomial> stages_of(const Graded& graded, int order) {
+std::vector<Polynomial> graded_stages(const Graded& graded, int order) {
   const std::size_t s = graded.powers.size();
-  Rows left = graded.combinations, right(s, Row(s, Quad(0)));
+  WeightRows left = graded.combinations, right(s, WeightRow(s, Quad(0)));
   for (std::size_t i = 0; i < s; ++i) right[i][i] = Quad(1);
   for (std::size_t k = 0; k < s; ++k) {
     std::size_t pivot = k;
@@ -220,7 +220,7 @@ std::vector<Polynomial> elements_of(const Tableau& table, const FreeAlgebra& alg
 std::vector<int> bracket_dimensions(const Tableau& table) {
   const Graded graded = graded_combinations(table);
   const FreeAlgebra algebra(graded.powers, table.order);
-  const std::vector<Polynomial> elements = elements_of(table, algebra, stages_of(graded, table.order));
+  const std::vector<Polynomial> elements = elements_of(table, algebra, graded_stages(graded, table.order));
   std::vector<int> dimensions;
   for (int power = 3; power <= table.order; ++power) {
     std::map<std::string, std::size_t> place;
@@ -231,7 +231,7 @@ std::vector<int> bracket_dimensions(const Tableau& table) {
     }
     Echelon independent;
     for (const Polynomial& element : elements) {
-      Row row(place.size(), Quad(0));
+      WeightRow row(place.size(), Quad(0));
       for (const auto& [word, at] : place) {
         const auto found = element.find(word);
         if (found != element.end()) row[at] = found->second;

@@ -10,7 +10,8 @@ namespace noether {
 namespace {
 
 /// Product of two square matrices, summed in one order.
-template <class Real> void multiply(const SmallMatrix<Real>& A, const SmallMatrix<Real>& B, SmallMatrix<Real>& out) {
+template <class Real>
+void multiply_small(const SmallMatrix<Real>& A, const SmallMatrix<Real>& B, SmallMatrix<Real>& out) {
   const Index n = A.rows();
   for (Index i = 0; i < n; ++i) {
     for (Index k = 0; k < n; ++k) {
@@ -22,7 +23,7 @@ template <class Real> void multiply(const SmallMatrix<Real>& A, const SmallMatri
 }
 
 /// Leaves A^-1 B in B, by Gauss's elimination; A is near the unit matrix, so that no row needs another place.
-template <class Real> void solve_in_place(SmallMatrix<Real>& A, SmallMatrix<Real>& B) {
+template <class Real> void solve_small(SmallMatrix<Real>& A, SmallMatrix<Real>& B) {
   const Index n = A.rows();
   for (Index i = 0; i < n; ++i) {
     for (Index j = i + 1; j < n; ++j) {
@@ -40,7 +41,7 @@ template <class Real> void solve_in_place(SmallMatrix<Real>& A, SmallMatrix<Real
 }
 
 /// Y (3 - Y^T Y)/2: orthogonal to the square of the error of Y.
-template <class Real> void renormalize(SmallMatrix<Real>& Y, SmallMatrix<Real>& work, SmallMatrix<Real>& defect) {
+template <class Real> void orthogonalize(SmallMatrix<Real>& Y, SmallMatrix<Real>& work, SmallMatrix<Real>& defect) {
   const Index n = Y.rows();
   for (Index i = 0; i < n; ++i) {
     for (Index k = 0; k < n; ++k) {
@@ -49,7 +50,7 @@ template <class Real> void renormalize(SmallMatrix<Real>& Y, SmallMatrix<Real>& 
       defect(i, k) = sum;
     }
   }
-  multiply(Y, defect, work);
+  multiply_small(Y, defect, work);
   for (Index i = 0; i < n; ++i) {
     for (Index k = 0; k < n; ++k) Y(i, k) -= work(i, k) / Real(2);
   }
@@ -75,13 +76,13 @@ template <class Real> void from_matrix(const SmallMatrix<Real>& A, Vector<Real>&
 }
 
 /// Rows of y as a matrix.
-template <class Real> void fill(const Vector<Real>& y, SmallMatrix<Real>& Y) {
+template <class Real> void rows_into(const Vector<Real>& y, SmallMatrix<Real>& Y) {
   const Index n = Y.rows();
   for (Index i = 0; i < n; ++i) {
     for (Index k = 0; k < n; ++k) Y(i, k) = y[n * i + k];
   }
 }
-template <class Real> void take(const SmallMatrix<Real>& Y, Vector<Real>& y) {
+template <class Real> void rows_of(const SmallMatrix<Real>& Y, Vector<Real>& y) {
   const Index n = Y.rows();
   y.resize(n * n);
   for (Index i = 0; i < n; ++i) {
@@ -116,14 +117,14 @@ template <class Real> void exponential_of_skew(const SmallMatrix<Real>& A, Small
       below.data()[i] += (k % 2 == 0 ? weight : -weight) * power.data()[i];
     }
     weight = weight * Real(degree - k) / (Real(2 * degree - k) * Real(k + 1));
-    multiply(power, X, next);
+    multiply_small(power, X, next);
     power.swap(next);
   }
-  solve_in_place(below, out);
+  solve_small(below, out);
   for (int k = 0; k < halvings; ++k) {
-    multiply(out, out, next);
+    multiply_small(out, out, next);
     out.swap(next);
-    renormalize(out, next, power);
+    orthogonalize(out, next, power);
   }
 }
 template void exponential_of_skew(const SmallMatrix<double>&, SmallMatrix<double>&);
@@ -132,18 +133,18 @@ template void exponential_of_skew(const SmallMatrix<Quad>&, SmallMatrix<Quad>&);
 template <class Real> void RotationField<Real>::act(const Vector<Real>& u, const Vector<Real>& y, Vector<Real>& out) {
   to_matrix(u, A_);
   exponential_of_skew(A_, B_);
-  fill(y, Y_);
-  multiply(B_, Y_, C_);
-  renormalize(C_, A_, B_);
-  take(C_, out);
+  rows_into(y, Y_);
+  multiply_small(B_, Y_, C_);
+  orthogonalize(C_, A_, B_);
+  rows_of(C_, out);
 }
 
 template <class Real>
 void RotationField<Real>::bracket(const Vector<Real>& u, const Vector<Real>& v, Vector<Real>& out) {
   to_matrix(u, A_);
   to_matrix(v, B_);
-  multiply(A_, B_, C_);
-  multiply(B_, A_, Y_);
+  multiply_small(A_, B_, C_);
+  multiply_small(B_, A_, Y_);
   C_ -= Y_;
   out.resize(algebra());
   from_matrix(C_, out);
@@ -173,9 +174,9 @@ void RotationField<Real>::find_velocity(const Real& t, const Vector<Real>& /*y*/
 template <class Real> void RotationField<Real>::evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) {
   find_velocity(t, y, a_);
   to_matrix(a_, A_);
-  fill(y, Y_);
-  multiply(A_, Y_, C_);
-  take(C_, dy);
+  rows_into(y, Y_);
+  multiply_small(A_, Y_, C_);
+  rows_of(C_, dy);
 }
 
 template class RotationField<double>;

@@ -90,10 +90,10 @@ TEST_CASE("bodies in a line and bodies at rest have turns, and steps back undo s
   const auto back = turn_variationally<double>(there->orientation, spin, line, -0.5);
   REQUIRE(back);
   CHECK((back->orientation - q).norm() < 1e-15);
-  const auto rest = turn_variationally<double>(q, Vec3<double>::Zero(), {1, 2, 3}, 0.5);
-  REQUIRE(rest);
-  CHECK(rest->orientation == q);
-  CHECK(rest->action == 0);
+  const auto resting = turn_variationally<double>(q, Vec3<double>::Zero(), {1, 2, 3}, 0.5);
+  REQUIRE(resting);
+  CHECK(resting->orientation == q);
+  CHECK(resting->action == 0);
 }
 
 TEST_CASE("the variational scheme refuses other rotors, and tables that need exact turns refuse it", "[lie]") {
