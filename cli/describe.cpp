@@ -126,7 +126,15 @@ struct Served {
   std::string_view equation, in_words;
 };
 
-Served served_by(const MethodClaims& claims) {
+Served served_by(const MethodInfo& info, const MethodClaims& claims) {
+  if (info.linear_only) {
+    return {"Y' = A(t) Y on rotations", "it supports systems of matrices of rotations, and neither forces nor others"};
+  }
+  if (info.on_groups) {
+    return {"y' = A(t, y) y on a Lie group",
+            "it supports rigid bodies under all forces and systems on groups; where there is no group it is a "
+            "Runge-Kutta method"};
+  }
   if (claims.gravity_only) {
     return {"gravity of point masses",
             "it supports gravity without softening, and beside it forces that depend on positions and time"};
@@ -157,7 +165,9 @@ std::vector<std::string> own_keys(const MethodInfo& info) {
 }
 
 void describe_method(const MethodInfo& info, bool json) {
-  const Served served = served_by(info.make(info, {})->claims());
+  const Served served = served_by(info, info.make(info, {})->claims());
+  const std::optional<GroupWork> work =
+      info.group_work != nullptr ? std::optional(info.group_work(info, {})) : std::nullopt;
   const std::vector<std::string> aliases = methods::aliases_of(info);
   if (json) {
     fmt::print("{}\n", Json::object({{"schema", "noether.describe/1"},
@@ -170,6 +180,7 @@ void describe_method(const MethodInfo& info, bool json) {
                                      {"order_in_quad", order_in_quad(info)},
                                      {"serves", served.equation},
                                      {"evaluations", info.evaluations > 0 ? Json(info.evaluations) : Json()},
+                                     {"group_work", work ? group_work_json(*work) : Json()},
                                      {"fixed", info.fixed},
                                      {"adaptive", info.adaptive},
                                      {"options", Json::list_of(own_keys(info))},
@@ -189,6 +200,7 @@ void describe_method(const MethodInfo& info, bool json) {
     fmt::print("  {} {} per step of given length\n", info.evaluations,
                info.evaluations == 1 ? "evaluation" : "evaluations");
   }
+  if (work) fmt::print("  {}\n", group_work_text(*work));
   if (std::isinf(info.stability_limit)) {
     fmt::print("  stable on the oscillator at any step\n");
   } else if (info.stability_limit == 0) {

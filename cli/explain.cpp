@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/explain_bodies.hpp"
 #include "cli/explain_kept.hpp"
+#include "cli/method_text.hpp"
 
 #include "integrators/composition.hpp"
 #include "integrators/stiffness.hpp"
@@ -98,7 +99,7 @@ double length_of(const SceneIntegrator& made) {
 /// What the Jacobian says: of systems along their run, and of few particles under a method for y' = f at its start.
 void measure_stiffness(const Scene& scene, Explanation& e) {
   static constexpr Index most_bodies = 50;
-  if (!scene.integrator.classical || scene.particles.size() > most_bodies) return;
+  if (!scene.integrator.classical || scene.particles.size() > most_bodies || has_bodies(scene.particles)) return;
   try {
     const std::unique_ptr<VectorField<double>> field = field_of(scene);
     Vector<double> y;
@@ -368,6 +369,10 @@ void print_cost(const Scene& scene, const Explanation& e) {
   if (e.corrector > 0)
     fmt::print("  before the first and for every look: {} of the corrector\n", counted(e.corrector, "flow"));
   if (!scene.integrator.classical) return;
+  const bool group = scene.system ? scene.system->field()->on_group() != nullptr : has_bodies(scene.particles);
+  const MethodInfo& info = *scene.integrator.classical->info;
+  if (group && info.group_work != nullptr)
+    fmt::print("  {}\n", group_work_text(info.group_work(info, scene.integrator.classical->options)));
   fmt::print("  {} of {}, on the average of the first steps\n", counted(e.evaluations, "evaluation"),
              scene.system ? "all rates" : "all forces together");
 }

@@ -1,6 +1,7 @@
 #include "cli/explain_bodies.hpp"
 
 #include "engine/bodies.hpp"
+#include "integrators/lie/group_options.hpp"
 #include "study/turning_steps.hpp"
 
 #include <fmt/format.h>
@@ -36,7 +37,12 @@ BodyCount counted_bodies(const Scene& scene) {
 
 std::string rotor_of(const Scene& scene) {
   const RotatingOptions& options = *scene.hamiltonian.rotating;
-  if (options.rotor == Rotor::exact) return "exact";
+  if (scene.integrator.on_groups()) {
+    const GroupOptions on = group_options_of(scene.integrator.classical->options);
+    return fmt::format("exponentials on {}, spins in axes of the {}", on.group == BodyGroup::so3 ? "SO(3)" : "SE(3)",
+                       on.spin_axes == SpinAxes::body ? "body" : "space");
+  }
+  if (options.rotor != Rotor::axes) return std::string(rotor_name(options.rotor));
   const std::string_view axes = options.axes;
   return fmt::format("axes {} {} {} {} {}", axes[0], axes[1], axes[2], axes[1], axes[0]);
 }

@@ -3,6 +3,7 @@
 #include "cli/method_text.hpp"
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
+#include "integrators/rotating.hpp"
 #include "numbers/error.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
@@ -203,7 +204,7 @@ void print_measured(bool json) {
   std::vector<Json> turning;
   for (const MeasuredTurns& one : turns) {
     turning.push_back(Json::object({{"method", one.method},
-                                    {"rotor", one.rotor == Rotor::exact ? "exact" : "axes"},
+                                    {"rotor", rotor_name(one.rotor)},
                                     {"order", one.order},
                                     {"claimed_order", one.claimed_order},
                                     {"kicks", one.kicks},

@@ -1,5 +1,7 @@
 #include "cli/method_text.hpp"
 
+#include "numbers/text.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,6 +25,21 @@ std::string order_text(const MethodInfo& info) {
 std::string evaluations_text(const MethodInfo& info) {
   if (info.evaluations > 0) return fmt::format("{}", info.evaluations);
   return info.fixed ? "iterates" : "-";
+}
+
+std::string group_work_text(const GroupWork& work) {
+  std::string text = fmt::format("{}, {} and {} a step on a group", counted(work.evaluations, "evaluation"),
+                                 counted(work.exponentials, "exponential"), counted(work.commutators, "commutator"));
+  if (work.least_commutators >= 0 && work.least_commutators < work.commutators)
+    text += fmt::format("; commutators could be reduced to {}", work.least_commutators);
+  return text;
+}
+
+Json group_work_json(const GroupWork& work) {
+  return Json::object({{"evaluations", work.evaluations},
+                       {"exponentials", work.exponentials},
+                       {"commutators", work.commutators},
+                       {"least_commutators", work.least_commutators >= 0 ? Json(work.least_commutators) : Json()}});
 }
 
 std::string limit_text(double limit) {

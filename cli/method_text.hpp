@@ -17,6 +17,12 @@ int order_in_quad(const MethodInfo& info);
 /// Evaluations of the forces a fixed step: "4", "iterates", or "-" where there are no fixed steps.
 std::string evaluations_text(const MethodInfo& info);
 
+/// What a step takes on a Lie group, as it is counted: "4 evaluations, 4 exponentials and 6 commutators a step on a
+/// group; commutators could be reduced to 2".
+std::string group_work_text(const GroupWork& work);
+/// The same for machines.
+Json group_work_json(const GroupWork& work);
+
 /// The first h omega that is unstable: "2.828", "never" stable, "always", or "-" where it is not known.
 std::string limit_text(double limit);
 /// The same for machines: a number (0: never stable), "always", or null.

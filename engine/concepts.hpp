@@ -83,6 +83,7 @@ struct HamiltonianClaims {
   bool columns = false;             ///< it moves columns beyond position and velocity
   bool twists = false;              ///< its kicks pass the torques of forces on to the spins of bodies
   bool turns = false;               ///< it turns rigid bodies
+  std::string_view rotor = "";      ///< how it turns them
   std::uint8_t coordinates = 0;     ///< of the position and velocity columns while a run goes on; 0: inertial
   bool inertial = true;             ///< flows meet x and v as users see them, so that letters of velocities may join
   bool velocity_forces = false;     ///< its kicks take forces that depend on velocities, as symmetric maps of order 2

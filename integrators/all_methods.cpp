@@ -19,9 +19,18 @@ std::span<const MethodInfo* const> all() {
     for (const auto& family :
          {runge_kutta_list(), collocation_list(), encke_list(), wide_gauss_list(), nystrom_list(), extrapolation_list(),
           multistep_list(), diagonally_implicit_list(), newmark_list(), rosenbrock_list(), bdf_list(), hbvm_list(),
-          discrete_gradient_list(), simo_tarnow_wong_list()}) {
+          discrete_gradient_list(), simo_tarnow_wong_list(), rkmk_list(), exponential_list()}) {
       for (const MethodInfo& info : family) every.push_back(&info);
     }
+    return every;
+  }();
+  return list;
+}
+
+std::span<const MethodInfo* const> of_rotations() {
+  static const std::vector<const MethodInfo*> list = [] {
+    std::vector<const MethodInfo*> every;
+    for (const MethodInfo& info : magnus_list()) every.push_back(&info);
     return every;
   }();
   return list;
@@ -36,15 +45,19 @@ std::vector<std::string> known_names() {
     known.insert(known.end(), aliases.begin(), aliases.end());
   };
   for (const Scheme* scheme : schemes::all()) add(scheme->name, schemes::aliases_of(*scheme));
-  for (const MethodInfo* info : all()) add(info->name, aliases_of(*info));
+  for (const auto& list : {all(), of_rotations()}) {
+    for (const MethodInfo* info : list) add(info->name, aliases_of(*info));
+  }
   return known;
 }
 
 const MethodInfo* find(std::string_view name) {
-  for (const MethodInfo* info : all()) {
-    if (info->name == name) return info;
-    const auto aliases = aliases_of(*info);
-    if (std::find(aliases.begin(), aliases.end(), name) != aliases.end()) return info;
+  for (const auto& list : {all(), of_rotations()}) {
+    for (const MethodInfo* info : list) {
+      if (info->name == name) return info;
+      const auto aliases = aliases_of(*info);
+      if (std::find(aliases.begin(), aliases.end(), name) != aliases.end()) return info;
+    }
   }
   return find_hbvm(name);
 }

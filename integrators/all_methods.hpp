@@ -13,8 +13,10 @@ namespace noether {
 
 namespace methods {
 
-/// Every classical method, once, family by family.
+/// Every classical method of forces and of systems of first order, once, family by family.
 std::span<const MethodInfo* const> all();
+/// Those that serve Y' = A(t) Y on rotations alone.
+std::span<const MethodInfo* const> of_rotations();
 
 /// The method of a name or an alias; null if there is none. @throws Error  as `find_hbvm`
 const MethodInfo* find(std::string_view name);
@@ -29,7 +31,7 @@ std::vector<std::string> aliases_of(const MethodInfo& info);
 /// Names and aliases of all schemes and classical methods: what a misspelt name may have meant.
 std::vector<std::string> known_names();
 
-// The families, each in a file of its own below integrators/methods/.
+// The families, each in a file of its own below integrators/methods/, those on Lie groups below integrators/lie/.
 std::span<const MethodInfo> runge_kutta_list();
 std::span<const MethodInfo> collocation_list();
 std::span<const MethodInfo> hbvm_list();
@@ -44,6 +46,9 @@ std::span<const MethodInfo> rosenbrock_list();
 std::span<const MethodInfo> bdf_list();
 std::span<const MethodInfo> discrete_gradient_list();
 std::span<const MethodInfo> simo_tarnow_wong_list();
+std::span<const MethodInfo> rkmk_list();
+std::span<const MethodInfo> exponential_list();
+std::span<const MethodInfo> magnus_list();
 
 }  // namespace methods
 

@@ -1,5 +1,6 @@
 #include "integrators/classical.hpp"
 
+#include "integrators/lie/lie_field.hpp"
 #include "integrators/particle_vector.hpp"
 #include "integrators/step_control.hpp"
 
@@ -54,11 +55,19 @@ void check_conservative(std::string_view method, const FieldClaims& field) {
 
 template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
   const MethodClaims method = method_->claims();
-  if (s.bodies() != nullptr) {
+  LieField<Real>* const group = field_->on_group();
+  if (s.bodies() != nullptr && (!choice_.info->on_groups || group == nullptr)) {
     throw SchemeMismatch(fmt::format(
         "method '{}' moves points, but some particles are rigid bodies that turn; use a splitting scheme, such as "
-        "'verlet' or 'srkn14a'",
-        method.name));
+        "'verlet' or 'srkn14a', or {}",
+        method.name,
+        choice_.info->on_groups ? "lie() in the place of classical()"
+                                : "a method on groups of rotations, such as 'rkmk_rk4'"));
+  }
+  if (choice_.info->linear_only && (group == nullptr || !group->linear())) {
+    throw SchemeMismatch(
+        fmt::format("method '{}' is for Y' = A(t) Y on rotations only, but '{}' is no such field; use 'rkmk_dop853'",
+                    method.name, field_->claims().name));
   }
   field_->bind(s);
   const FieldClaims field = field_->claims();

@@ -153,12 +153,21 @@ void check_basic(const HamiltonianClaims& claims, const std::string& hamiltonian
                                claims.alphabet));
 }
 
+/// Where nothing turns every scheme may walk.
+void check_rotor(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian) {
+  if (!claims.turns || scheme.rotor.empty() || scheme.rotor == claims.rotor) return;
+  throw SchemeMismatch(
+      fmt::format("scheme '{}' turns bodies by the rotor '{}', but '{}' has '{}'; use 'verlet' with it", scheme.name,
+                  scheme.rotor, hamiltonian, claims.rotor));
+}
+
 }  // namespace
 
 FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian,
                        const CompositionOptions& options) {
   check_kepler(options, claims, hamiltonian);
   check_basic(claims, hamiltonian);
+  check_rotor(scheme, claims, hamiltonian);
   FittedWord word{{scheme.word.begin(), scheme.word.end()}};
   if (scheme.is_composition()) {
     const bool exact = claims.inexact.find(claims.basic.front()) == std::string_view::npos;

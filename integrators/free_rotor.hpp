@@ -14,8 +14,9 @@ namespace noether {
 
 /// How bodies turn in the flow A.
 enum class Rotor : std::uint8_t {
-  exact,  ///< the exact flow of sum Pi_k^2/2 I_k
-  axes    ///< flows of its three terms in a palindrome: a symmetric map of order 2
+  exact,       ///< the exact flow of sum Pi_k^2/2 I_k
+  axes,        ///< flows of its three terms in a palindrome: a symmetric map of order 2
+  variational  ///< the discrete rigid body of Moser and Veselov: a symmetric map of order 2, see variational_rotor.hpp
 };
 
 /// A body's orientation after a flow, and the action of the flow, int sum Pi_k^2/2 I_k dt [energy time].

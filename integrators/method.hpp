@@ -99,6 +99,14 @@ template <class Real> class Method {
   virtual void load(const SavedState& saved, const std::string& prefix) = 0;
 };
 
+/// What a step of a method on a Lie group takes, counted by an algebra that counts.
+struct GroupWork {
+  int evaluations = 0, exponentials = 0, commutators = 0;
+  /// With commutators of stages combined so that each is of the highest power of h that it can be, and those beyond the
+  /// order left out; -1: the method has none that could be.
+  int least_commutators = -1;
+};
+
 /// A method as lists show it, and how to make one.
 struct MethodInfo {
   std::string_view name;
@@ -113,12 +121,15 @@ struct MethodInfo {
   int printed_digits = 34;              ///< significant digits of the shortest coefficient in the source
   bool fixed = true, adaptive = false;  ///< what it can do; adaptive wins where both are possible
   bool gravity_only = false;            ///< see `MethodClaims`
+  bool on_groups = false;               ///< it steps fields on Lie groups, such as rigid bodies, as such
+  bool linear_only = false;             ///< it serves Y' = A(t) Y on a group of rotations only
   double rtol = 1e-6, atol = 1e-9;      ///< defaults; the second of systems of first order
   /// First h omega on the oscillator that is unstable with fixed steps; 0: every one is, infinity: none is, NaN: it
   /// does not say.
   double stability_limit = std::numeric_limits<double>::quiet_NaN();
   std::unique_ptr<Method<double>> (*make)(const MethodInfo&, const MethodOptions&) = nullptr;
   std::unique_ptr<Method<Quad>> (*make_quad)(const MethodInfo&, const MethodOptions&) = nullptr;  ///< null: double only
+  GroupWork (*group_work)(const MethodInfo&, const MethodOptions&) = nullptr;  ///< of those on groups
 
   /// All options it takes: of error control where it can choose its steps, then others.
   std::vector<const OptionGroup*> option_groups() const;

@@ -6,6 +6,7 @@
 #include "engine/erasure.hpp"
 #include "engine/sums.hpp"
 #include "integrators/free_rotor.hpp"
+#include "integrators/variational_rotor.hpp"
 #include "integrators/wrapped.hpp"
 #include "numbers/cost_book.hpp"
 #include "numbers/parallel.hpp"
@@ -19,9 +20,25 @@
 namespace noether {
 
 template <> struct EnumNames<Rotor> {
-  static constexpr std::array<std::pair<Rotor, std::string_view>, 2> values = {
-      {{Rotor::exact, "exact"}, {Rotor::axes, "axes"}}};
+  static constexpr std::array<std::pair<Rotor, std::string_view>, 3> values = {
+      {{Rotor::exact, "exact"}, {Rotor::axes, "axes"}, {Rotor::variational, "variational"}}};
 };
+
+/// As scenes have it.
+constexpr std::string_view rotor_name(Rotor rotor) {
+  for (const auto& known : EnumNames<Rotor>::values) {
+    if (known.first == rotor) return known.second;
+  }
+  return "";
+}
+
+/// The rotor of a name; empty where there is none.
+constexpr std::optional<Rotor> rotor_of(std::string_view name) {
+  for (const auto& known : EnumNames<Rotor>::values) {
+    if (known.second == name) return known.first;
+  }
+  return {};
+}
 
 /// How bodies turn.
 struct RotatingOptions {
@@ -32,8 +49,11 @@ struct RotatingOptions {
     return part<RotatingOptions>(
         "rotating", "rigid bodies that turn: A turns them freely too, B twists them by the torques of forces",
         formula("H + sum Pi^2/2I:  A: q -> free turn, S stays;  B: S -> S + h torque"),
-        source("CelledoniFassoSafstromZanna2008, VanZonSchofield2007, DullweberLeimkuhlerMcLachlan1997"),
-        field<&RotatingOptions::rotor>("rotor", "1", "how bodies turn: exact, or axes, one after the other"),
+        source("CelledoniFassoSafstromZanna2008, VanZonSchofield2007, DullweberLeimkuhlerMcLachlan1997, "
+               "MoserVeselov1991"),
+        field<&RotatingOptions::rotor>("rotor", "1",
+                                       "how bodies turn: exact; axes, one after the other; variational, as the "
+                                       "discrete body of Moser and Veselov does"),
         field<&RotatingOptions::axes>("axes", "1", "order of axes of rotor = \"axes\": xyz is x y z y x"));
   }
   /// @throws Error  for axes that are no order of x, y and z
@@ -47,10 +67,11 @@ struct RotatingOptions {
 ///     B:  that of H_points, and S -> S + h torque(x, q)                        action increment  - h U
 ///
 /// Free motion and free turns commute, so A is exact with the rotor `exact`, and Runge-Kutta-Nystroem tables keep their
-/// order, since T is quadratic in the momenta; `axes` makes it a symmetric map of order 2. With p = 2 (0, S) q all this
-/// is canonical in the R^8 of q and p, where the shadow Hamiltonian looks (docs/theory/rigid_body.md). A point beside
-/// bodies has no moments and does not turn; a body that a fixed point holds turns about it. Eight systems in the lanes
-/// of a `Pack` have the bits of each alone, and dual numbers carry the tangent map.
+/// order, since T is quadratic in the momenta; `axes` and `variational` make it a symmetric map of order 2. With p = 2
+/// (0, S) q all this is canonical in the R^8 of q and p, where the shadow Hamiltonian looks
+/// (docs/theory/rigid_body.md). A point beside bodies has no moments and does not turn; a body that a fixed point holds
+/// turns about it. Eight systems in the lanes of a `Pack` have the bits of each alone, and dual numbers carry the
+/// tangent map.
 /// @cost one free turn for each body and A
 /// @source ToumaWisdom1994, DullweberLeimkuhlerMcLachlan1997
 template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
@@ -68,7 +89,8 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
   HamiltonianClaims claims() const {
     HamiltonianClaims claims = Wrapped<H>::claims();
     claims.columns = claims.turns = true;
-    if (options_.rotor == Rotor::axes && claims.inexact.find('A') == std::string_view::npos) {
+    claims.rotor = rotor_name(options_.rotor);
+    if (options_.rotor != Rotor::exact && claims.inexact.find('A') == std::string_view::npos) {
       claims.inexact = claims.inexact.empty() ? "A" : "AB";
     }
     return claims;
@@ -82,7 +104,13 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
     }
     if constexpr (InLanes<real>) check_lanes(s);
     turned_ = ScalarColumn<real>((s.size() + 7) / 8 * 8);
+    failure_.reset();
   }
+  void observe(std::optional<Request> wanted) {
+    observing_ = wanted.has_value();
+    Wrapped<H>::observe(wanted);
+  }
+  const std::optional<Failure>& failure() const { return failure_ ? failure_ : Wrapped<H>::failure(); }
   void flow(char letter, ParticleSystem<real>& s, const real& h) {
     if (letter == 'A') turn(s, h);
     Wrapped<H>::flow(letter, s, h);
@@ -128,6 +156,11 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
     const auto& inertia = std::as_const(s).template column<BodyInertia>();
     const auto& spin = std::as_const(s).template column<BodySpin>();
     auto& orientation = s.template column<BodyOrientation>();
+    if (options_.rotor == Rotor::variational) {
+      const std::optional<Failure> failure = turn_all_variationally<real>(s, h, turned_);
+      if (failure && !failure_ && !observing_) failure_ = failure;
+      return;
+    }
     for_blocks(s.size(), [&](Index begin, Index end) {
       if (options_.rotor == Rotor::axes) {
         return turn_all_by_axes<real>(orientation, spin, inertia, h, order_, begin, end, turned_);
@@ -143,6 +176,8 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
   RotatingOptions options_;
   AxisOrder order_;
   ScalarColumn<real> turned_;  ///< action of the last turn of each body [energy time], in whole eights
+  bool observing_ = false;
+  std::optional<Failure> failure_;
 };
 
 template <class H> Rotating(H) -> Rotating<H>;

@@ -81,6 +81,7 @@ struct Scheme {
   Order order = {};
   SchemeClass scheme_class = SchemeClass::general;
   std::string_view exact = "";  ///< letters whose maps must be exact flows, unless it is walked as sub-steps
+  std::string_view rotor = "";  ///< how bodies must turn; empty: as they like
   /// First h omega on the harmonic oscillator that is unstable; NaN: it does not say.
   double stability_limit = std::numeric_limits<double>::quiet_NaN();
   int printed_digits = 34;  ///< significant digits of the shortest coefficient in the source

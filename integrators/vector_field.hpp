@@ -60,6 +60,8 @@ struct FieldClaims {
   bool keeps_angular_momentum = false;
 };
 
+template <class Real> class LieField;
+
 /// The right-hand side of y' = f(t, y), erased: classical methods are compiled once for each number type.
 ///
 /// It also knows how a ParticleSystem carries y: particles as y = (x, v), component by component, each of n values; a
@@ -99,6 +101,9 @@ template <class Real> class VectorField {
     evaluations_.force += std::popcount(states.wanted & ((1U << static_cast<unsigned>(states.stages)) - 1));
     return evaluate_stages(states, out);
   }
+  /// The field as one on a Lie group (integrators/lie/lie_field.hpp), where y does not go along straight lines; else
+  /// null.
+  virtual LieField<Real>* on_group() { return nullptr; }
   /// Whether stages are evaluated one after the other, so that it saves something not to want them all.
   virtual bool stages_in_turn() const { return true; }
   /// Where the q of the states may be formed, so that nobody has to copy them; null where there is no such place.

@@ -5,6 +5,7 @@
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/hamiltonian_motion.hpp"
+#include "integrators/lie/body_motion.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
 #include "numbers/parallel.hpp"
@@ -153,7 +154,14 @@ AnyHamiltonian<double> SceneHamiltonian::make(const ParticleSystem<double>& part
   return hamiltonian;
 }
 
-AnyHamiltonian<double> hamiltonian_of(const Scene& scene) { return scene.hamiltonian.make(scene.particles); }
+AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
+  const std::optional<Rotor> rotor = rotor_of(scene.integrator.scheme.rotor);
+  if (!rotor || scene.integrator.classical || !scene.hamiltonian.rotating)
+    return scene.hamiltonian.make(scene.particles);
+  SceneHamiltonian turned = scene.hamiltonian;
+  turned.rotating->rotor = *rotor;
+  return turned.make(scene.particles);
+}
 
 ForceField<double> forces_of(const Scene& scene) {
   ForceField<double> forces;
@@ -166,6 +174,10 @@ ForceField<double> forces_of(const Scene& scene) {
 std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
   if (scene.system) return scene.system->field();
   const SceneSplitting& splitting = scene.hamiltonian.splitting;
+  if (scene.integrator.on_groups() && scene.hamiltonian.rotating) {
+    return std::make_unique<BodyMotion<double>>(scene.hamiltonian.on_bodies(forces_of(scene)),
+                                                group_options_of(scene.integrator.classical->options), splitting.name);
+  }
   if (splitting.only_forces) {
     return std::make_unique<ForceMotion<ForceField<double>, double>>(forces_of(scene), splitting.name);
   }

@@ -64,6 +64,7 @@ class SceneReader {
     scene_.integrator =
         read_integrator(context_, table(top, "integrator"), parts_, !scene_.hamiltonian.constraints.empty(),
                         scene_.effective.put("integrator", SceneValue::table()));
+    if (scene_.hamiltonian.rotating) fit_rotor(table(top, "hamiltonian"));
     read_watches(top);
     read_stops(top);
     const SceneValue* expect = top.find("expect");
@@ -247,6 +248,33 @@ class SceneReader {
     put_fields(reader, options, effective);
     if (options.rotor != Rotor::axes) effective.erase("axes");
     made.rotating = options;
+  }
+
+  /// A method may turn bodies in a way of its own.
+  void fit_rotor(const SceneValue& hamiltonian) {
+    const TableReader reader(context_, hamiltonian, "[hamiltonian]", "hamiltonian");
+    const SceneIntegrator& made = scene_.integrator;
+    RotatingOptions& options = *scene_.hamiltonian.rotating;
+    SceneValue& effective = *scene_.effective.find("hamiltonian");
+    const bool given = hamiltonian.find("rotor") != nullptr;
+    if (made.on_groups()) {
+      if (given) {
+        reader.fail("rotor",
+                    fmt::format("rotor is how splitting methods turn bodies, but '{}' turns them on their group; "
+                                "take it out",
+                                made.method));
+      }
+      effective.erase("rotor");
+    }
+    const std::optional<Rotor> rotor = rotor_of(made.classical ? "" : made.scheme.rotor);
+    if (!rotor) return;
+    if (given && options.rotor != *rotor) {
+      reader.fail("rotor",
+                  fmt::format("rotor = \"{}\" is not that of '{}', which is \"{}\"; take it out, or use 'verlet'",
+                              rotor_name(options.rotor), made.method, rotor_name(*rotor)));
+    }
+    options.rotor = *rotor;
+    effective.put("rotor", SceneValue::of(std::string(rotor_name(*rotor))));
   }
 
   /// Refuses a box or constraints that the splitting does not know.

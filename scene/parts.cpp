@@ -34,6 +34,7 @@
 #include "integrators/systems/prothero_robinson.hpp"
 #include "integrators/systems/rc_ladder.hpp"
 #include "integrators/systems/robertson.hpp"
+#include "integrators/systems/turning_frame.hpp"
 #include "integrators/tidal.hpp"
 #include "integrators/velocity_rescaling.hpp"
 #include "integrators/wisdom_holman.hpp"
@@ -172,6 +173,7 @@ Parts standard_parts() {
   parts.add_system<ProtheroRobinson>();
   parts.add_system<ForcedDampedOscillator>();
   parts.add_system<NonseparableOscillator>();
+  parts.add_system<TurningFrame>();
   parts.add_monitor<Energy>();
   parts.add_monitor<Momentum>();
   parts.add_monitor<AngularMomentum>();
@@ -193,7 +195,9 @@ Parts standard_parts() {
   parts.add_stop<Escape>();
   parts.add_stop<Collision>();
   parts.add_decorator<ProjectionOptions>();
-  for (const MethodInfo* method : methods::all()) parts.add_method(*method);
+  for (const auto& list : {methods::all(), methods::of_rotations()}) {
+    for (const MethodInfo* method : list) parts.add_method(*method);
+  }
   return parts;
 }
 

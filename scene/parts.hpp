@@ -8,6 +8,7 @@
 #include "engine/simulation.hpp"
 #include "forces/sum.hpp"
 #include "integrators/hamiltonian_system.hpp"
+#include "integrators/lie/group_system.hpp"
 #include "integrators/method.hpp"
 #include "scene/fields.hpp"
 
@@ -294,8 +295,8 @@ class Parts {
     return *this;
   }
 
-  /// Makes system `S`, of first order or Hamiltonian, known by the name it describes itself with; one of the same name
-  /// is replaced.
+  /// Makes system `S`, of first order, Hamiltonian, or on a group, known by the name it describes itself with; one of
+  /// the same name is replaced.
   template <class S>
   requires MovingSystem<S, double> Parts& add_system() {
     static_assert(Described<S>, "a system in a scene describes itself: static constexpr auto describe()");

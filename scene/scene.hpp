@@ -70,6 +70,8 @@ struct SceneIntegrator {
 
   /// Whether the method chooses its steps.
   bool adaptive() const { return classical && classical->info->is_adaptive(classical->options); }
+  /// Whether rigid bodies are stepped on their group.
+  bool on_groups() const { return classical && classical->info->on_groups; }
   /// Which way the run goes: the end says it where there is one in time, else the step.
   Direction direction() const { return (until ? *until - start : step) < 0 ? Direction::backward : Direction::forward; }
   /// How long the whole run is, below 0 where time falls [time]; empty where the scene does not say.

@@ -19,7 +19,8 @@ struct MeasuredTurns {
 };
 
 /// Every scheme that turns a top of three different moments with its weight off all axes (I = (2, 1, 2/3), m g = 1,
-/// centre at (0.2, 0.3, 0.5), spin (0.6, -0.4, 0.9)), in 113 bits, by exact turns and, where it can, axis by axis.
+/// centre at (0.2, 0.3, 0.5), spin (0.6, -0.4, 0.9)), in 113 bits, by exact turns and, where it can, axis by axis; the
+/// variational scheme by its own.
 /// @cost half a minute
 std::vector<MeasuredTurns> measured_turns();
 

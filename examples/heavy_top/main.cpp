@@ -6,6 +6,7 @@
 #include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/lie/body_motion.hpp"
 #include "integrators/rotating.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
@@ -16,6 +17,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
 
 using namespace noether;
 
@@ -35,18 +39,26 @@ ForceField<double> weight() {
   return on_top;
 }
 
-/// How far the axis is from where it began after one nod, and has gone round, by so many steps of a method.
-void tell_nod(const std::string& method, Rotor rotor, int steps) {
+/// How far the axis is from where it began after one nod, and has gone round, by so many steps of an integrator.
+template <class I> void tell_nod(const std::string& method, std::string_view turns, I integrator, int steps) {
   const double period = 2.62410021994501064743, precession = 0.97016986498882435069;
-  Simulation sim(
-      leaning_top(),
-      compose(Rotating<AnyHamiltonian<double>>(KineticPotential(weight()), {.rotor = rotor}), *schemes::find(method)),
-      period / steps);
+  Simulation sim(leaning_top(), std::move(integrator), period / steps);
   if (!sim.run(steps).ok()) return;
   const Mat3<double> r = rotation_matrix<double>(sim.particles().column<BodyOrientation>()[0]);
   const double nod = std::abs(std::acos(r(2, 2)) - 0.5), round = std::abs(std::atan2(r(1, 2), r(0, 2)) - precession);
-  fmt::print("  {:<16} {:<6} {:4} steps, {:5} kicks: nutation off by {:.1e}, precession by {:.1e}\n", method,
-             rotor == Rotor::exact ? "exact" : "axes", steps, sim.evaluations().force, nod, round);
+  fmt::print("  {:<21} {:<11} {:4} steps, {:4} evaluations: nutation off by {:.1e}, precession by {:.1e}\n", method,
+             turns, steps, sim.evaluations().force, nod, round);
+}
+/// By a splitting into turns and kicks.
+void tell_splitting(const std::string& name, Rotor rotor, int steps) {
+  const Rotating<AnyHamiltonian<double>> turning(KineticPotential(weight()), {.rotor = rotor});
+  tell_nod(name, rotor_name(rotor), compose(turning, *schemes::find(name)), steps);
+}
+/// By a method on the group of rotations, with steps of one length.
+void tell_group(const std::string& name, int steps) {
+  MethodOptions options;
+  if (methods::find(name)->adaptive) options.adaptive = false;
+  tell_nod(name, "exponential", lie(weight(), method(name, options)), steps);
 }
 
 int main() {
@@ -61,14 +73,20 @@ int main() {
   fmt::print("{}: energy within {:.1e}; shadow {}\n", outcome, energy.worst(), shadow.verdict());
 
   fmt::print("one nod and its way round, against elliptic integrals:\n");
-  for (const char* method : {"verlet", "yoshida_4"}) {
-    tell_nod(method, Rotor::axes, 100);
-    tell_nod(method, Rotor::exact, 100);
+  for (const char* scheme : {"verlet", "yoshida_4"}) {
+    tell_splitting(scheme, Rotor::axes, 100);
+    tell_splitting(scheme, Rotor::exact, 100);
   }
-  tell_nod("blanes_moan_s6", Rotor::exact, 50);
-  tell_nod("srkn6b", Rotor::exact, 50);
-  tell_nod("srkn11b", Rotor::exact, 30);
-  tell_nod("srkn14a", Rotor::exact, 30);
+  tell_splitting("lie_group_variational", Rotor::variational, 100);
+  tell_splitting("blanes_moan_s6", Rotor::exact, 50);
+  tell_splitting("srkn6b", Rotor::exact, 50);
+  tell_splitting("srkn11b", Rotor::exact, 30);
+  tell_splitting("srkn14a", Rotor::exact, 30);
+  for (const char* name :
+       {"crouch_grossman_3", "crouch_grossman_4", "commutator_free_3", "commutator_free_4", "rkmk_rk4"})
+    tell_group(name, 75);
+  tell_group("rkmk_dormand_prince_5", 50);
+  tell_group("rkmk_dop853", 25);
   fmt::print("{}\n", io::digest(sim.particles()));
   return exit_code(outcome);
 }

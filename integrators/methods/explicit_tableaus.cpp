@@ -161,4 +161,16 @@ const Dop853Dense& dop853_dense() {
   return dense;
 }
 
+std::span<const NamedTableau> all_explicit() {
+  static constexpr NamedTableau list[] = {
+      {"euler", euler},
+      {"heun", heun},
+      {"rk4", rk4},
+      {"dormand_prince_5", dormand_prince_5, dormand_prince_5_dense},
+      {"cash_karp_5", cash_karp_5},
+      {"dop853", dop853, nullptr, dop853_third_order_error},
+  };
+  return list;
+}
+
 }  // namespace noether::tableaus

@@ -3,6 +3,10 @@
 
 #include "integrators/methods/tableau.hpp"
 
+#include <span>
+#include <string_view>
+#include <vector>
+
 namespace noether::tableaus {
 
 const Tableau& euler();
@@ -26,5 +30,20 @@ struct Dop853Dense {
   std::vector<std::vector<Quad>> d;
 };
 const Dop853Dense& dop853_dense();
+
+/// A table with what belongs to it: what a method made of it needs to know.
+struct NamedTableau {
+  std::string_view name;
+  const Tableau& (*table)() = nullptr;
+  const std::vector<Quad>& (*dense)() = nullptr;         ///< weights of the term of degree 4 beyond the cubic; or null
+  const std::vector<Quad>& (*second_error)() = nullptr;  ///< weights of a second error estimate; or null
+
+  /// Of its error estimates, plus one, and by how much a step may grow at once.
+  int control_order() const { return second_error != nullptr ? table().order : table().embedded_order + 1; }
+  double most_growth() const { return second_error != nullptr ? 6 : 10; }
+};
+
+/// Every explicit table, once.
+std::span<const NamedTableau> all_explicit();
 
 }  // namespace noether::tableaus

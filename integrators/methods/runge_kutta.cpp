@@ -218,10 +218,10 @@ namespace methods {
 namespace {
 
 const Tableau& table_of(std::string_view name) {
-  if (name == "euler") return tableaus::euler();
-  if (name == "heun") return tableaus::heun();
-  if (name == "rk4") return tableaus::rk4();
-  return tableaus::cash_karp_5();
+  for (const tableaus::NamedTableau& known : tableaus::all_explicit()) {
+    if (known.name == name) return known.table();
+  }
+  throw LogicError("there is no table of '" + std::string(name) + "'");
 }
 
 template <class Real> std::unique_ptr<Method<Real>> plain(const MethodInfo& info, const MethodOptions& options) {

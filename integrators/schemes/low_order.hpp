@@ -29,6 +29,15 @@ inline constexpr Scheme verlet = symmetric_composition(
      .stability_limit = 2.0},
     list(rest));
 
+inline constexpr Scheme lie_group_variational = symmetric_composition(
+    {.name = "lie_group_variational", .aliases = "lgvi discrete_moser_veselov",
+     .summary = "order 2, one kick: velocity Verlet whose bodies turn by a discrete action on their group of rotations",
+     .use = "bodies on their group, and comparison with published runs; exact turns are nearer and take longer steps",
+     .source = "LeeLeokMcClamroch2005", .order = {2},
+     .rotor = "variational",
+     .stability_limit = 2.0},
+    list(rest));
+
 inline constexpr Scheme verlet_aba = palindrome(
     {.name = "verlet_aba", .aliases = "position_verlet leapfrog_aba",
      .summary = "order 2, one kick: position Verlet, drift first",
@@ -46,7 +55,8 @@ inline constexpr Scheme ruth_3 = alternating(
     list(2_q / 3_q, -2_q / 3_q, 1_q));
 
 inline constexpr std::array classical_list = {
-    &symplectic_euler_a, &symplectic_euler_b, &verlet, &verlet_aba, &ruth_3};
+    &symplectic_euler_a, &symplectic_euler_b, &verlet, &lie_group_variational, &verlet_aba,
+    &ruth_3};
 
 // clang-format on
 

@@ -348,6 +348,8 @@ SYSTEMS = {
     "forced_damped_oscillator": system("type = 'forced_damped_oscillator'"),
     "nonseparable_oscillator": dataclasses.replace(system("type = 'nonseparable_oscillator'; position = 0.5"),
                                                    energy=True),
+    "turning_frame": system("type = 'turning_frame'; drive = 1.5", method="magnus_4", flow="rkmk_dormand_prince_5",
+                            rivals=("magnus_4", "magnus_2")),
 }
 
 
