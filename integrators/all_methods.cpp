@@ -16,9 +16,9 @@ namespace methods {
 std::span<const MethodInfo* const> all() {
   static const std::vector<const MethodInfo*> list = [] {
     std::vector<const MethodInfo*> every;
-    for (const auto& family :
-         {runge_kutta_list(), collocation_list(), encke_list(), wide_gauss_list(), nystrom_list(), extrapolation_list(),
-          multistep_list(), diagonally_implicit_list(), newmark_list(), rosenbrock_list(), bdf_list()}) {
+    for (const auto& family : {runge_kutta_list(), collocation_list(), encke_list(), wide_gauss_list(), nystrom_list(),
+                               extrapolation_list(), multistep_list(), diagonally_implicit_list(), newmark_list(),
+                               rosenbrock_list(), bdf_list(), variational_list()}) {
       for (const MethodInfo& info : family) every.push_back(&info);
     }
     return every;

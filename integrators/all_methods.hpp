@@ -37,6 +37,7 @@ std::span<const MethodInfo> diagonally_implicit_list();
 std::span<const MethodInfo> newmark_list();
 std::span<const MethodInfo> rosenbrock_list();
 std::span<const MethodInfo> bdf_list();
+std::span<const MethodInfo> variational_list();
 
 }  // namespace methods
 
