@@ -164,8 +164,10 @@ void sort_parts(const Scene& scene, Explanation& e) {
             : "every " + counted(watch.cadence.steps, "step");
     const std::string later =
         watch.cadence.after ? fmt::format(", not before {:.12g}{}", *watch.cadence.after, unit) : "";
+    const Index coordinates =
+        scene.system ? static_cast<Index>(scene.particles.variables().size()) / 2 : 3 * scene.particles.size();
     const std::string cost =
-        watch.monitor.cost && listed == 0 ? watch.monitor.cost(scene.particles.size(), watch.cadence.steps) : "";
+        watch.monitor.cost && listed == 0 ? watch.monitor.cost(coordinates, watch.cadence.steps) : "";
     e.in.push_back(name + ", " + when + later + beside + (scene.default_watches ? ", by default" : "") +
                    (cost.empty() ? "" : ": " + cost));
   }

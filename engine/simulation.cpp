@@ -117,7 +117,7 @@ template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
 
 template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added) const {
   const IntegratorClaims claims = integrator_.claims();
-  const bool lacking = (added.wanted.energy && !claims.energy) || added.wanted.action;
+  const bool lacking = added.wanted.energy && !claims.energy;
   if (claims.variables && (added.monitor.needs_particles() || lacking)) {
     throw Error(fmt::format("monitor '{}' watches particles, but system '{}' has only variables", added.name,
                             claims.hamiltonian));

@@ -49,6 +49,7 @@ std::span<const MethodInfo> simo_tarnow_wong_list();
 std::span<const MethodInfo> rkmk_list();
 std::span<const MethodInfo> exponential_list();
 std::span<const MethodInfo> magnus_list();
+std::span<const MethodInfo> variational_list();
 
 }  // namespace methods
 

@@ -3,6 +3,7 @@
 #include "integrators/lie/lie_field.hpp"
 #include "integrators/particle_vector.hpp"
 #include "integrators/step_control.hpp"
+#include "integrators/variational/lagrangian_field.hpp"
 
 #include <cmath>
 #include <limits>
@@ -71,7 +72,8 @@ template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
   }
   field_->bind(s);
   const FieldClaims field = field_->claims();
-  if (method.second_order_only && !field.second_order) {
+  const bool of_lagrangian = method_->has_action() && LagrangianField<Real>::behind(*field_) != nullptr;
+  if (method.second_order_only && !field.second_order && !of_lagrangian) {
     throw SchemeMismatch(
         fmt::format("method '{}' is for q'' = a only, but '{}' is a first-order system; use a method "
                     "for y' = f, such as 'dormand_prince_5'",
@@ -140,6 +142,11 @@ template <class Real> Advance Classical<Real>::advance(ParticleSystem<Real>& s, 
   if (done.steps > 0) field_->scatter(y_, s);
   if (done.steps > 0 && low != nullptr) detail::scatter_low_words(*low, s);
   return done;
+}
+
+template <class Real> bool Classical<Real>::has_action() const {
+  if (!method_->has_action()) return false;
+  return field_->has_potential() || LagrangianField<Real>::behind(*field_) != nullptr;
 }
 
 template <class Real>

@@ -39,7 +39,7 @@ template <class Real> class Classical {
   /// @throws SchemeMismatch  if the method cannot serve the field
   void bind(ParticleSystem<Real>& s);
   Advance advance(ParticleSystem<Real>& s, const Span& span);
-  bool has_action() const { return method_->has_action() && field_->has_potential(); }
+  bool has_action() const;
   Advance advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action);
   Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted, std::optional<double> at,
               bool corrected);

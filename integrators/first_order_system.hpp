@@ -39,10 +39,11 @@ namespace detail {
 /// `SystemMotion<Lorenz, double>`.
 template <class S, class Real> struct MotionOf;
 
-/// How many variables a system has: one that tells no rates but one function of its coordinates has a momentum for
-/// each of them.
+/// How many variables a system has: as many as it has sizes, or, where one function of its coordinates tells the
+/// motion, a momentum for each of them too.
 template <class S> Index variable_count(const S& system) {
-  return FirstOrderSystem<S, double> ? Index(system.size()) : 2 * Index(system.size());
+  if constexpr (requires { requires MotionOf<S, double>::has_momenta; }) return 2 * Index(system.size());
+  return Index(system.size());
 }
 }  // namespace detail
 

@@ -184,6 +184,7 @@ template <class S, class Real>
   requires HamiltonianSystem<S, Real>
 struct detail::MotionOf<S, Real> {
   using type = CanonicalMotion<S, Real>;
+  static constexpr bool has_momenta = true;
 };
 
 }  // namespace noether

@@ -25,6 +25,15 @@ double binomial(std::int64_t n, std::int64_t k) {
 
 [[noreturn]] void refuse_saved() { throw Error("the saved window of a shadow Hamiltonian is inconsistent"); }
 
+/// (q' - q) . (p' + p) of the variables (q, p) of a system.
+template <class Real> Real difference_of_variables(const std::vector<Real>& older, const std::vector<Real>& newer) {
+  const std::size_t n = newer.size() / 2;
+  return sum_over<Real>(static_cast<Index>(n), [&](Index at) {
+    const auto i = static_cast<std::size_t>(at);
+    return (newer[i] - older[i]) * (newer[n + i] + older[n + i]);
+  });
+}
+
 /// (q' - q) . (p' + p) of one particle without its mass, or of one body's turn, in differences.
 template <class Real, int width = 3> struct Difference {
   const RowColumn<Real, width>&x_old, &v_old, &x_new, &v_new;
@@ -58,11 +67,11 @@ template <class Real> void ShadowHamiltonian<Real>::check() const {
   if (orders.empty()) refuse_field("orders", "[]", "is an empty list; even numbers such as [4, 8, 12] are expected");
 }
 
-template <class Real> std::string ShadowHamiltonian<Real>::cost(Index particles, std::int64_t cadence) const {
+template <class Real> std::string ShadowHamiltonian<Real>::cost(Index coordinates, std::int64_t cadence) const {
   const std::int64_t row = steps_in_a_row();
   const std::string when = cadence <= row ? "each step" : fmt::format("each of {} steps in {}", row, cadence);
   return fmt::format("{} products of {} numbers and the energies of the kicks at {}; keeps {} numbers", row - 1,
-                     3 * particles, when, 6 * particles * row);
+                     coordinates, when, 2 * coordinates * row);
 }
 
 template <class Real> void ShadowHamiltonian<Real>::observe(const Snapshot<Real>& now) {
@@ -75,7 +84,7 @@ template <class Real> void ShadowHamiltonian<Real>::observe(const Snapshot<Real>
   for (std::size_t at = 0; at < orders.size(); ++at) values_.push_back(value(at, h));
   take(now.time());
   // Velocities that leave the constraints a little hide what forces of constraints do along them.
-  const bool comparable = constraint_tolerance_ == 0;
+  const bool comparable = constraint_tolerance_ == 0 && now.state().variables().empty();
   if (comparable && std::has_single_bit(static_cast<std::uint64_t>(samples_))) compare_force_and_energy(now);
 }
 
@@ -97,6 +106,10 @@ template <class Real> void ShadowHamiltonian<Real>::begin(const Snapshot<Real>& 
       using std::sqrt;
       return 2 * static_cast<double>(sqrt(norm2(Vec3<Real>(spin[i]))));
     });
+  }
+  const std::vector<Real>& y = s.variables();
+  for (std::size_t i = 0; i < y.size() / 2; ++i) {
+    distance += std::abs(static_cast<double>(y[i]) * static_cast<double>(y[y.size() / 2 + i]));
   }
   const auto epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
   noise_ = 8 * epsilon * (distance / std::abs(s.clock().dt()) + t + std::abs(u)) / scale_;
@@ -156,7 +169,8 @@ template <class Real> void ShadowHamiltonian<Real>::compare_force_and_energy(con
 /// Adds the present point to the window, with its products with all points before it.
 template <class Real> void ShadowHamiltonian<Real>::append(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.mapped();
-  const bool goes_on = !points_.empty() && points_.back().step + 1 == now.step() && points_.back().x.size() == s.size();
+  const bool goes_on = !points_.empty() && points_.back().step + 1 == now.step() &&
+                       points_.back().x.size() == s.size() && points_.back().variables.size() == s.variables().size();
   if (!goes_on) points_.clear();
   if (points_.size() == static_cast<std::size_t>(steps_in_a_row())) {
     std::rotate(points_.begin(), points_.begin() + 1, points_.end());  // the oldest one's memory serves the newest
@@ -170,6 +184,7 @@ template <class Real> void ShadowHamiltonian<Real>::append(const Snapshot<Real>&
     for (Index i = 0; i < s.size(); ++i) point.x.set(i, s.unwrapped(i));
   }
   point.v = s.velocities();
+  point.variables = s.variables();
   if (s.low_words() != nullptr) point.x_low = s.low_words()->x;
   if (has_bodies(s)) {
     point.turn = s.template column<BodyOrientation>();
@@ -200,6 +215,7 @@ Real ShadowHamiltonian<Real>::difference(const Point& older, const Point& newer,
   if (compensated) sum += sum_over<Real>(masses.size(), [&](Index i) { return masses[i] * low.at(i); });
   const Difference<Real, 4> turns{older.turn, older.twist, newer.turn, newer.twist};
   if (newer.turn.size() > 0) sum += sum_over<Real>(newer.turn.size(), [&](Index i) { return turns.at(i); });
+  if (!newer.variables.empty()) sum += difference_of_variables(older.variables, newer.variables);
   return sum - Real(2) * action;
 }
 
@@ -331,6 +347,12 @@ template <class Real> void ShadowHamiltonian<Real>::save(SavedState& saved, cons
   }
   for (const Figures& f : figures_) numbers.insert(numbers.end(), {f.first, f.mean, f.squares});
   if (const std::vector<Real> of_bodies = turns(); !of_bodies.empty()) save_value(saved, name("turns"), of_bodies);
+  if (!points_.empty() && !points_.front().variables.empty()) {
+    std::vector<Real> of_system;
+    for (const Point& point : points_)
+      of_system.insert(of_system.end(), point.variables.begin(), point.variables.end());
+    save_value(saved, name("variables"), of_system);
+  }
   save_value(saved, name("shape"), shape);
   save_value(saved, name("columns"), columns);
   save_value(saved, name("numbers"), numbers);
@@ -376,7 +398,23 @@ template <class Real> void ShadowHamiltonian<Real>::load(const SavedState& saved
     load_value(saved, name("turns"), of_bodies);
     load_turns(of_bodies);
   }
+  if (saved.contains(name("variables"))) {
+    std::vector<Real> of_system;
+    load_value(saved, name("variables"), of_system);
+    load_variables(of_system);
+  }
   values_.clear();
+}
+
+/// The variables of all points of the window, in a row.
+template <class Real> void ShadowHamiltonian<Real>::load_variables(const std::vector<Real>& values) {
+  if (points_.empty() || values.size() % points_.size() != 0) refuse_saved();
+  const auto each = static_cast<std::ptrdiff_t>(values.size() / points_.size());
+  auto next = values.begin();
+  for (Point& point : points_) {
+    point.variables.assign(next, next + each);
+    next += each;
+  }
 }
 
 /// The quaternions of bodies and their momenta at all points of the window, in a row.

@@ -24,7 +24,8 @@ double shadow_weight(std::int64_t k, std::int64_t a, std::int64_t b);
 ///
 /// (docs/theory/shadow.md). The value belongs to the middle of the k + 1 steps. It is orders of magnitude flatter than
 /// the energy, so errors that hide in the energy's oscillation show: too large a step, loose constraints, a force that
-/// is no gradient. Only differences of positions enter: no reference, no loss far from the origin.
+/// is no gradient. Only differences of positions enter: no reference, no loss far from the origin. Of a system with
+/// coordinates and momenta, q and p are its variables.
 /// @cost k inner products of length 3 n a step, the energy of every kick; 6 n (k + 1) numbers. At a cadence longer than
 ///       k + 1 steps it looks at k + 1 steps in a row each time, and costs nothing between
 /// @source SkeelHardy2001, EngleSkeelDrees2005
@@ -51,8 +52,8 @@ template <class Real = double> class ShadowHamiltonian {
 
   static Request wanted() { return {.energy = true, .action = true}; }
   std::int64_t steps_in_a_row() const { return orders.back() / 2 + 1; }
-  /// What it costs beside the run, in words.
-  std::string cost(Index particles, std::int64_t cadence) const;
+  /// What it costs beside the run, in words, with so many coordinates.
+  std::string cost(Index coordinates, std::int64_t cadence) const;
   void observe(const Snapshot<Real>& now);
   void forget() { points_.clear(); }
 
@@ -80,6 +81,7 @@ template <class Real = double> class ShadowHamiltonian {
     std::int64_t step = 0;
     VectorColumn<Real> x, v, x_low;
     RowColumn<Real, 4> turn, twist;  ///< of bodies: orientations q and their momenta 2 (0, S) q; else empty
+    std::vector<Real> variables;     ///< of a system: q, then p; else empty
     Real action = Real(0);           ///< from the point before to this one
     std::vector<Real> products;      ///< w(this, the point m steps before) at m - 1
   };
@@ -97,6 +99,7 @@ template <class Real = double> class ShadowHamiltonian {
   void take(double time);
   std::vector<Real> turns() const;
   void load_turns(const std::vector<Real>& turns);
+  void load_variables(const std::vector<Real>& values);
   void load_points(const std::vector<std::int64_t>& shape, const std::vector<Real>& numbers);
   void begin(const Snapshot<Real>& now);
   double rounding() const;

@@ -23,9 +23,10 @@ constexpr std::int64_t once = std::int64_t{1} << 62;
 
 void attach_monitors(Simulation<double>& sim, const Scene& scene) {
   const ConstraintSet constraints = constraints_of(scene);
+  const std::vector<Symmetry> symmetries = scene.system ? scene.system->symmetries : std::vector<Symmetry>();
   for (const SceneWatch& watch : scene.watches) {
     if (watch.kind == SceneWatch::Kind::monitor) {
-      detail::attach(sim, watch.cadence, watch.monitor.make(constraints));
+      detail::attach(sim, watch.cadence, watch.monitor.make(constraints, symmetries));
     }
   }
 }

@@ -27,10 +27,13 @@
 #include "integrators/minimize.hpp"
 #include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
+#include "integrators/systems/double_pendulum.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/systems/lorenz.hpp"
 #include "integrators/systems/nonseparable_oscillator.hpp"
+#include "integrators/systems/pendulum.hpp"
+#include "integrators/systems/polar_kepler.hpp"
 #include "integrators/systems/prothero_robinson.hpp"
 #include "integrators/systems/rc_ladder.hpp"
 #include "integrators/systems/robertson.hpp"
@@ -41,6 +44,7 @@
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
 #include "monitors/dihedrals.hpp"
+#include "monitors/momentum_map.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/orbital_monitors.hpp"
 #include "monitors/pressure.hpp"
@@ -174,6 +178,9 @@ Parts standard_parts() {
   parts.add_system<ForcedDampedOscillator>();
   parts.add_system<NonseparableOscillator>();
   parts.add_system<TurningFrame>();
+  parts.add_system<SimplePendulum>();
+  parts.add_system<DoublePendulum>();
+  parts.add_system<PolarKepler>();
   parts.add_monitor<Energy>();
   parts.add_monitor<Momentum>();
   parts.add_monitor<AngularMomentum>();
@@ -190,6 +197,7 @@ Parts standard_parts() {
   parts.add_monitor<MeanSquareDisplacement>();
   parts.add_monitor<VelocityAutocorrelation>();
   parts.add_monitor<Variables>();
+  parts.add_monitor<MomentumMap>();
   parts.add_monitor<ConstraintResidual>();
   parts.add_monitor<ShadowHamiltonian<double>>();
   parts.add_stop<Escape>();

@@ -10,6 +10,7 @@
 #include "integrators/hamiltonian_system.hpp"
 #include "integrators/lie/group_system.hpp"
 #include "integrators/method.hpp"
+#include "integrators/variational/lagrangian_system.hpp"
 #include "scene/fields.hpp"
 
 #include <algorithm>
@@ -109,8 +110,9 @@ struct SceneConstraint {
 struct SceneMonitor {
   std::string name;
   SceneValue effective;
-  std::function<AnyMonitor<double>(const ConstraintSet&)> make;  ///< it may watch the constraints of the run
-  /// What it costs beside the run, in words, by particles and cadence [steps]; empty for what is not worth a word.
+  /// It may watch the constraints of the run, and symmetries of its system.
+  std::function<AnyMonitor<double>(const ConstraintSet&, const std::vector<Symmetry>&)> make;
+  /// What it costs beside the run, in words, by coordinates and cadence [steps]; empty for what is not worth a word.
   std::function<std::string(Index, std::int64_t)> cost;
 };
 
@@ -140,6 +142,7 @@ struct SceneSystem {
   std::function<std::unique_ptr<VectorField<Quad>>()> wide_field;  ///< empty for a system that knows doubles only
   /// The closed solution, by time; empty where there is none, or the scene starts elsewhere or at another time.
   std::function<std::vector<double>(double)> exact;
+  std::vector<Symmetry> symmetries = {};  ///< that it names
 };
 
 namespace detail {
@@ -295,8 +298,8 @@ class Parts {
     return *this;
   }
 
-  /// Makes system `S`, of first order, Hamiltonian, or on a group, known by the name it describes itself with; one of
-  /// the same name is replaced.
+  /// Makes system `S`, of first order, Hamiltonian, with a Lagrangian, or on a group, known by the name it describes
+  /// itself with; one of the same name is replaced.
   template <class S>
   requires MovingSystem<S, double> Parts& add_system() {
     static_assert(Described<S>, "a system in a scene describes itself: static constexpr auto describe()");
@@ -466,6 +469,7 @@ class Parts {
       reader.fail(nullptr, "start", fmt::format("{} has no start; give start = [...]", reader.what()));
     }
     made.start = initial_state(system, std::move(values), *reader.context().units);
+    if constexpr (requires { system.symmetries(); }) made.symmetries = system.symmetries();
     made.field = [system] { return std::make_unique<typename detail::MotionOf<S, double>::type>(system); };
     if constexpr (MovingSystem<S, Quad>) {
       made.wide_field = [system] { return std::make_unique<typename detail::MotionOf<S, Quad>::type>(system); };
@@ -478,13 +482,14 @@ class Parts {
     read_part(reader, monitor);
     SceneMonitor made{std::string(part_name<M>()), SceneValue::table(), {}, {}};
     put_fields(reader, monitor, made.effective);
-    made.make = [monitor](const ConstraintSet& constraints) {
+    made.make = [monitor](const ConstraintSet& constraints, const std::vector<Symmetry>& symmetries) {
       M watching = monitor;
       if constexpr (requires { watching.watch(constraints); }) watching.watch(constraints);
+      if constexpr (requires { watching.watch(symmetries); }) watching.watch(symmetries);
       return AnyMonitor<double>(std::move(watching));
     };
     if constexpr (requires { monitor.cost(Index(1), std::int64_t{1}); }) {
-      made.cost = [monitor](Index particles, std::int64_t cadence) { return monitor.cost(particles, cadence); };
+      made.cost = [monitor](Index coordinates, std::int64_t cadence) { return monitor.cost(coordinates, cadence); };
     }
     return made;
   }

@@ -123,6 +123,18 @@ CollocationTable make_gauss(int stages) {
   return table_of(std::move(nodes), 2 * stages);
 }
 
+CollocationTable make_lobatto(int stages) {
+  // Between the ends the derivative of P_(s-1) vanishes.
+  std::vector<Quad> nodes = {0};
+  if (stages == 3) nodes.push_back(Quad(1) / Quad(2));
+  if (stages > 3) {
+    for (const Quad& x : zeros([&](Quad at) { return legendre(stages - 1, at).second; }, stages - 2))
+      nodes.push_back((x + Quad(1)) / Quad(2));
+  }
+  nodes.push_back(1);
+  return table_of(std::move(nodes), 2 * stages - 2);
+}
+
 CollocationTable make_radau_left(int stages) {
   // P_(s-1) + P_s vanishes at -1; the other zeros are those of the quotient by 1 + x.
   const auto inner = [&](Quad x) {
@@ -143,6 +155,16 @@ const CollocationTable& gauss_table(int stages) {
   }();
   NOETHER_EXPECTS(stages >= 1 && stages <= 8, "a Gauss method has 1 to 8 stages");
   return all[static_cast<std::size_t>(stages - 1)];
+}
+
+const CollocationTable& lobatto_table(int stages) {
+  static const auto all = [] {
+    std::array<CollocationTable, 8> tables;
+    for (int s = 2; s <= 9; ++s) tables[static_cast<std::size_t>(s - 2)] = make_lobatto(s);
+    return tables;
+  }();
+  NOETHER_EXPECTS(stages >= 2 && stages <= 9, "a Lobatto table has 2 to 9 nodes");
+  return all[static_cast<std::size_t>(stages - 2)];
 }
 
 const CollocationTable& radau_left_table() {

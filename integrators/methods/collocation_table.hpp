@@ -28,6 +28,9 @@ struct CollocationTable {
 /// Nodes of Gauss and Legendre, 1 to 8 of them: order 2 s, symplectic, symmetric.
 const CollocationTable& gauss_table(int stages);
 
+/// Nodes of Lobatto, both ends among them, 2 to 9 of them: weights of order 2 s - 2.
+const CollocationTable& lobatto_table(int stages);
+
 /// The eight nodes of Radau with the left end among them, those of IAS15: order 15.
 const CollocationTable& radau_left_table();
 

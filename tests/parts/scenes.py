@@ -338,6 +338,13 @@ SOLVERS = {
     "p_lincs": constrained(BAR, TIED + "; solver = 'p_lincs'; order = 30; iterations = 10"),
 }
 
+
+def action(keys):
+    """A system by its Lagrangian, under methods that make its action stationary."""
+    rivals = ("variational_midpoint", "galerkin_gauss_2")
+    return dataclasses.replace(system(keys, method="galerkin_gauss_2", step=0.05, rivals=rivals), energy=True)
+
+
 SYSTEMS = {
     "robertson": system("type = 'robertson'", step=0.01, **STIFF),
     "rc_ladder": system("type = 'rc_ladder'; stages = 4; spread = 100; omega = 1; start = [1.0, 0.5, 0.2, 0.1]",
@@ -350,6 +357,9 @@ SYSTEMS = {
                                                    energy=True),
     "turning_frame": system("type = 'turning_frame'; drive = 1.5", method="magnus_4", flow="rkmk_dormand_prince_5",
                             rivals=("magnus_4", "magnus_2")),
+    "pendulum": action("type = 'pendulum'"),
+    "double_pendulum": action("type = 'double_pendulum'; start = [0.5, 0.2, 0.0, 0.0]"),
+    "polar_kepler": action("type = 'polar_kepler'"),
 }
 
 
@@ -380,6 +390,8 @@ MONITORS = {
     "velocity_autocorrelation": seen("type = 'velocity_autocorrelation'; length = 4; origins = 2; steps = {cadence}",
                                      salt(LENNARD_JONES)),
     "variables": seen("type = 'variables'; variable = 'z'; steps = {cadence}", system("type = 'lorenz'", step=0.01)),
+    "momentum_map": seen("type = 'momentum_map'; symmetry = 'rotation'; steps = {cadence}",
+                         action("type = 'polar_kepler'")),
     "constraint_residual": seen("type = 'constraint_residual'; steps = {cadence}",
                                 constrained(BAR, TIED)),
     "shadow_hamiltonian": seen("type = 'shadow_hamiltonian'; orders = [4, 8]; steps = 1",

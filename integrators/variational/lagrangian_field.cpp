@@ -1,0 +1,99 @@
+#include "integrators/variational/lagrangian_field.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace noether {
+
+template <class Real> std::string place_text(const Vector<Real>& q) {
+  std::vector<std::string> shown;
+  for (Index i = 0; i < q.size() && i < 4; ++i) shown.push_back(fmt::format("{:.6g}", static_cast<double>(q[i])));
+  if (q.size() > 4) shown.emplace_back("...");
+  return fmt::format("q = ({})", fmt::join(shown, ", "));
+}
+
+template std::string place_text(const Vector<double>& q);
+template std::string place_text(const Vector<Quad>& q);
+
+namespace {
+template <class Real> double size_of(const Vector<Real>& d) {
+  double largest = 0;
+  for (Index i = 0; i < d.size(); ++i) {
+    const double one = std::abs(static_cast<double>(d[i]));
+    if (!std::isfinite(one)) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, one);
+  }
+  return largest;
+}
+}  // namespace
+
+/// One update by Newton; where it leaves more of p than before, a shorter one. @return whether there is one
+template <class Real>
+bool LagrangianField<Real>::correct_velocity(const Real& t, const Vector<Real>& q, const Vector<Real>& p, bool renew,
+                                             Vector<Real>& v) {
+  if (renew) {
+    find_tangent(t, q, v, tangent_);
+    if (!factors_.compute(tangent_.momentum_v)) return false;
+  }
+  const double left = size_of(off_);
+  factors_.solve(off_, update_);
+  for (int halved = 0; halved < 60; ++halved) {
+    tried_ = v + update_;
+    find_terms(t, q, tried_, terms_);
+    off_ = p - terms_.momentum;
+    // Rounding of p itself is no reason to go back.
+    if (size_of(off_) <= std::max(left, 8 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * size_of(p))) {
+      v = tried_;
+      return true;
+    }
+    update_ *= Real(0.5);
+  }
+  return false;
+}
+
+template <class Real>
+std::optional<Failure> LagrangianField<Real>::velocity(const Real& t, const Vector<Real>& q, const Vector<Real>& p,
+                                                       Vector<Real>& v) {
+  constexpr int most = 200;
+  const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
+  v.setZero(q.size());
+  find_terms(t, q, v, terms_);
+  off_ = p - terms_.momentum;
+  double before = std::numeric_limits<double>::infinity();
+  bool renew = true;
+  for (int made = 0; made < most; ++made) {
+    if (!correct_velocity(t, q, p, renew, v)) break;
+    const double change = size_of(update_), size = size_of(v);
+    if (change == 0 || size_of(off_) == 0) return {};
+    if (change <= 64 * rounding * size && !(change < 0.5 * before)) return {};
+    if (!std::isfinite(change)) break;
+    renew = change > 1e-6 * size;  // what is left is done by the same matrix
+    before = change;
+  }
+  return Failure{Outcome::Kind::solver_failure, -1, "velocity",
+                 fmt::format("the Lagrangian gives no velocity for the momentum at {}: d^2L/dq'^2 has no inverse there",
+                             place_text(q))};
+}
+
+template <class Real> void LagrangianField<Real>::evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) {
+  const Index n = coordinates();
+  q_ = y.head(n);
+  p_ = y.tail(n);
+  dy.resize(2 * n);
+  if (const std::optional<Failure> failure = velocity(t, q_, p_, v_)) {
+    this->note(failure);
+    dy.setConstant(Real(std::numeric_limits<double>::quiet_NaN()));
+    return;
+  }
+  find_terms(t, q_, v_, terms_);
+  dy.head(n) = v_;
+  dy.tail(n) = terms_.force;
+}
+
+template class LagrangianField<double>;
+template class LagrangianField<Quad>;
+
+}  // namespace noether

@@ -1,0 +1,254 @@
+#pragma once
+/// A user's own action: a Lagrangian in any coordinates, stepped by variational and by classical methods.
+
+#include "engine/signature.hpp"
+#include "engine/symmetry.hpp"
+#include "integrators/first_order_system.hpp"
+#include "integrators/variational/lagrangian_field.hpp"
+#include "numbers/dual.hpp"
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace noether {
+
+/// What a system with a Lagrangian offers: how many coordinates it has, and L over any number type.
+///
+///     struct Pendulum {
+///       Index size() const { return 1; }
+///       template <class Real> Real lagrangian(const Real& t, const Vector<Real>& q, const Vector<Real>& v) const {
+///         return v[0] * v[0] / Real(2) + cos(q[0]);
+///       }
+///     };
+///
+/// Its state is (q, p), p = dL/dq', 2 n variables. It may also offer
+///
+///     template <class Real> void force(const Real& t, const Vector<Real>& q, const Vector<Real>& v,
+///                                      Vector<Real>& f) const;   // beside the Lagrangian, such as drag: d'Alembert
+///     bool forced() const;                                       // whether there is one; default: where it has
+///     `force` std::vector<Symmetry> symmetries() const;                  // for the monitor `momentum_map`
+///     std::vector<double> start() const;                         // q, then p
+///     std::vector<std::string> names() const;                    // of all 2 n
+///     std::vector<double> exact(double t) const;                 // from `start()` at time 0
+///
+/// All derivatives are found by dual numbers, nested where they are second ones.
+/// @source MarsdenWest2001
+template <class S, class Real>
+concept LagrangianSystem = requires(const S& system, const Real& t, const Vector<Real>& q) {
+  { system.size() } -> std::convertible_to<Index>;
+  { system.lagrangian(t, q, q) } -> std::convertible_to<Real>;
+};
+
+/// A Lagrangian system as methods see it; q and p stand in `ParticleSystem::variables`.
+/// @cost 2 n Lagrangians over dual numbers for momenta and forces, 4 n^2 over nested ones for their derivatives
+template <class S, class Real> class LagrangianMotion final : public LagrangianField<Real> {
+ public:
+  explicit LagrangianMotion(S system) : system_(std::move(system)) {}
+
+  std::unique_ptr<VectorField<Real>> clone() const override { return std::make_unique<LagrangianMotion>(*this); }
+  FieldClaims claims() const override {
+    return {.name = detail::name_of(system_),
+            .variables = true,
+            .canonical = !forced(),
+            .time_dependent = time_dependent_,
+            .energy = true,
+            .dissipative = forced(),
+            .symplectic = !forced()};
+  }
+  std::string signature() const override { return detail::signature_of(system_); }
+
+  void bind(const ParticleSystem<Real>& s) override {
+    if (static_cast<Index>(s.variables().size()) != size() || s.size() != 0) {
+      throw Error(fmt::format("system '{}' has {} variables, but it was given {} and {} particles",
+                              detail::name_of(system_), size(), s.variables().size(), s.size()));
+    }
+    look_for_time(s);
+  }
+  Index size() const override { return 2 * Index(system_.size()); }
+  void gather(const ParticleSystem<Real>& s, Vector<Real>& y) const override {
+    y.resize(size());
+    for (Index i = 0; i < size(); ++i) y[i] = s.variables()[static_cast<std::size_t>(i)];
+  }
+  void scatter(const Vector<Real>& y, ParticleSystem<Real>& s) const override {
+    for (Index i = 0; i < size(); ++i) s.variables()[static_cast<std::size_t>(i)] = y[i];
+  }
+
+  Real action_density(const Real& t, const Vector<Real>& q, const Vector<Real>& v) override {
+    return system_.lagrangian(t, q, v);
+  }
+  void terms_along(const Real& t, const Vector<Real>& q, const Vector<Real>& v, const Real& dt, const Vector<Real>& dq,
+                   const Vector<Real>& dv, LagrangianTerms<Real>& out) override {
+    using Along = Dual<Real, 1>;
+    const Index n = q.size();
+    along_q_.resize(n);
+    along_v_.resize(n);
+    for (Index i = 0; i < n; ++i) {
+      along_q_[i] = detail::along(q[i], dq[i]);
+      along_v_[i] = detail::along(v[i], dv[i]);
+    }
+    find<Along>(detail::along(t, dt), along_q_, along_v_, along_);
+    out.momentum.resize(n);
+    out.force.resize(n);
+    for (Index i = 0; i < n; ++i) {
+      out.momentum[i] = along_.momentum[i].slope[0];
+      out.force[i] = along_.force[i].slope[0];
+    }
+  }
+
+  bool has_derivative() const override { return true; }
+  /// By the derivative of p = dL/dq'(t, q, v): L_vv dv = dp - L_vq dq - L_vt dt.
+  void derivative(const Real& t, const Vector<Real>& y, const Real& dt, const Vector<Real>& dy,
+                  Vector<Real>& out) override {
+    const Index n = this->coordinates();
+    const Vector<Real> q = y.head(n), p = y.tail(n), dq = dy.head(n);
+    Vector<Real> v, dv = Vector<Real>::Zero(n);
+    out.setConstant(2 * n, Real(std::numeric_limits<double>::quiet_NaN()));
+    if (this->velocity(t, q, p, v)) return;
+    LagrangianTerms<Real> change;
+    LagrangianTangent<Real> tangent;
+    terms_along(t, q, v, dt, dq, dv, change);
+    find_tangent(t, q, v, tangent);
+    if (!factors_.compute(tangent.momentum_v)) return;
+    factors_.solve(dy.tail(n) - change.momentum, dv);
+    out.head(n) = dv;
+    for (Index i = 0; i < n; ++i) {
+      out[n + i] = change.force[i] + sum_over<Real>(n, [&](Index k) { return tangent.force_v(i, k) * dv[k]; });
+    }
+  }
+
+  /// H = p v - L; what rests in it, -L(t, q, 0), is called potential.
+  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override {
+    Vector<Real> y;
+    gather(s, y);
+    const Index n = this->coordinates();
+    const Vector<Real> q = y.head(n), still = Vector<Real>::Zero(n);
+    const Real total = hamiltonian(s.time(), y), at_rest = -system_.lagrangian(s.time(), q, still);
+    using std::isfinite;
+    if (!isfinite(at_rest)) return {.kinetic = total, .potential = Real(0)};
+    return {.kinetic = total - at_rest, .potential = at_rest};
+  }
+  bool has_hamiltonian() const override { return true; }
+  Real hamiltonian(const Real& t, const Vector<Real>& y) override {
+    const Index n = this->coordinates();
+    const Vector<Real> q = y.head(n), p = y.tail(n);
+    Vector<Real> v;
+    if (this->velocity(t, q, p, v)) return Real(std::numeric_limits<double>::quiet_NaN());
+    return sum_over<Real>(n, [&](Index i) { return p[i] * v[i]; }) - system_.lagrangian(t, q, v);
+  }
+  void accelerations(const ParticleSystem<Real>& /*s*/, VectorColumn<Real>& /*a*/) override {}
+
+ protected:
+  void find_terms(const Real& t, const Vector<Real>& q, const Vector<Real>& v, LagrangianTerms<Real>& out) override {
+    find<Real>(t, q, v, out);
+  }
+  void find_tangent(const Real& t, const Vector<Real>& q, const Vector<Real>& v,
+                    LagrangianTangent<Real>& out) override {
+    const Index n = q.size();
+    for (Matrix<Real>* m : {&out.momentum_q, &out.momentum_v, &out.force_q, &out.force_v}) m->resize(n, n);
+    rest_.setZero(n);
+    direction_.setZero(n);
+    for (Index k = 0; k < n; ++k) {
+      direction_[k] = Real(1);
+      terms_along(t, q, v, Real(0), direction_, rest_, column_);
+      out.momentum_q.col(k) = column_.momentum;
+      out.force_q.col(k) = column_.force;
+      terms_along(t, q, v, Real(0), rest_, direction_, column_);
+      out.momentum_v.col(k) = column_.momentum;
+      out.force_v.col(k) = column_.force;
+      direction_[k] = Real(0);
+    }
+  }
+
+ private:
+  static constexpr bool has_force = requires(const S& system, const Real& t, const Vector<Real>& q, Vector<Real>& f) {
+    system.force(t, q, q, f);
+  };
+  bool forced() const {
+    if constexpr (has_force && requires { system_.forced(); }) return system_.forced();
+    return has_force;
+  }
+
+  /// Momenta and forces over numbers of any type: dual ones seed each variable in turn.
+  template <class Number>
+  void find(const Number& t, const Vector<Number>& q, const Vector<Number>& v, LagrangianTerms<Number>& out) const {
+    using Seeded = Dual<Number, 1>;
+    const Index n = q.size();
+    Vector<Seeded> x(n), u(n);
+    for (Index i = 0; i < n; ++i) {
+      x[i] = Seeded(q[i]);
+      u[i] = Seeded(v[i]);
+    }
+    out.momentum.resize(n);
+    out.force.resize(n);
+    const Seeded time(t);
+    for (Index i = 0; i < n; ++i) {
+      u[i].slope[0] = Number(1);
+      out.momentum[i] = Seeded(system_.lagrangian(time, x, u)).slope[0];
+      u[i].slope[0] = Number(0);
+      x[i].slope[0] = Number(1);
+      out.force[i] = Seeded(system_.lagrangian(time, x, u)).slope[0];
+      x[i].slope[0] = Number(0);
+    }
+    if constexpr (has_force) {
+      Vector<Number> beside = Vector<Number>::Constant(n, Number(0));
+      system_.force(t, q, v, beside);
+      for (Index i = 0; i < n; ++i) out.force[i] = out.force[i] + beside[i];
+    }
+  }
+
+  /// Whether dL/dt is other than 0 at the start, and at two later times that no period of round numbers hides.
+  void look_for_time(const ParticleSystem<Real>& s) {
+    Vector<Real> y, v;
+    gather(s, y);
+    const Index n = this->coordinates();
+    const Vector<Real> q = y.head(n), p = y.tail(n);
+    if (this->velocity(s.time(), q, p, v)) return;
+    Vector<Dual<Real, 1>> x(n), u(n);
+    for (Index i = 0; i < n; ++i) {
+      x[i] = Dual<Real, 1>(q[i]);
+      u[i] = Dual<Real, 1>(v[i]);
+    }
+    time_dependent_ = false;
+    for (const double later : {0.0, 0.36787944117144233, 1.2020569031595943}) {
+      const Real rate =
+          Dual<Real, 1>(system_.lagrangian(detail::along(s.time() + Real(later), Real(1)), x, u)).slope[0];
+      time_dependent_ = time_dependent_ || rate > Real(0) || rate < Real(0);
+    }
+  }
+
+  S system_;
+  bool time_dependent_ = false;
+  DenseFactors<Real> factors_;
+  Vector<Real> rest_, direction_;
+  Vector<Dual<Real, 1>> along_q_, along_v_;
+  LagrangianTerms<Dual<Real, 1>> along_;
+  LagrangianTerms<Real> column_;
+};
+
+template <class S, class Real>
+  requires(LagrangianSystem<S, Real> && !FirstOrderSystem<S, Real>)
+struct detail::MotionOf<S, Real> {
+  using type = LagrangianMotion<S, Real>;
+  static constexpr bool has_momenta = true;
+};
+
+/// The state with coordinates q and momenta p: `initial_state(Pendulum{}, {2.0}, {0.3})`.
+/// @throws Error  as `initial_state` of any system
+template <class S>
+  requires LagrangianSystem<S, double> ParticleSystem<double> initial_state(const S& system, std::vector<double> q,
+                                                                            const std::vector<double>& p) {
+    q.insert(q.end(), p.begin(), p.end());
+    return initial_state(system, std::move(q));
+  }
+
+/// A method over a Lagrangian: `variational(Pendulum{}, method("galerkin_gauss_3"))`, or any classical one.
+template <class S>
+  requires LagrangianSystem<S, double> Classical<double> variational(S system, const MethodChoice& choice) {
+    return Classical<double>(std::make_unique<LagrangianMotion<S, double>>(std::move(system)), choice);
+  }
+
+}  // namespace noether
