@@ -16,9 +16,10 @@ namespace methods {
 std::span<const MethodInfo* const> all() {
   static const std::vector<const MethodInfo*> list = [] {
     std::vector<const MethodInfo*> every;
-    for (const auto& family : {runge_kutta_list(), collocation_list(), encke_list(), wide_gauss_list(), nystrom_list(),
-                               extrapolation_list(), multistep_list(), diagonally_implicit_list(), newmark_list(),
-                               rosenbrock_list(), bdf_list(), discrete_gradient_list(), simo_tarnow_wong_list()}) {
+    for (const auto& family :
+         {runge_kutta_list(), collocation_list(), encke_list(), wide_gauss_list(), nystrom_list(), extrapolation_list(),
+          multistep_list(), diagonally_implicit_list(), newmark_list(), rosenbrock_list(), bdf_list(), hbvm_list(),
+          discrete_gradient_list(), simo_tarnow_wong_list()}) {
       for (const MethodInfo& info : family) every.push_back(&info);
     }
     return every;
@@ -45,7 +46,7 @@ const MethodInfo* find(std::string_view name) {
     const auto aliases = aliases_of(*info);
     if (std::find(aliases.begin(), aliases.end(), name) != aliases.end()) return info;
   }
-  return nullptr;
+  return find_hbvm(name);
 }
 
 }  // namespace methods

@@ -16,8 +16,12 @@ namespace methods {
 /// Every classical method, once, family by family.
 std::span<const MethodInfo* const> all();
 
-/// The method of a name or an alias; null if there is none.
+/// The method of a name or an alias; null if there is none. @throws Error  as `find_hbvm`
 const MethodInfo* find(std::string_view name);
+
+/// The method "hbvm_K_S" or "hbvm_S" of any K and S, which need not be in a list; null for another name.
+/// @throws Error  for numbers that no such method has
+const MethodInfo* find_hbvm(std::string_view name);
 
 /// Other names of a method, one by one.
 std::vector<std::string> aliases_of(const MethodInfo& info);
@@ -28,6 +32,7 @@ std::vector<std::string> known_names();
 // The families, each in a file of its own below integrators/methods/.
 std::span<const MethodInfo> runge_kutta_list();
 std::span<const MethodInfo> collocation_list();
+std::span<const MethodInfo> hbvm_list();
 std::span<const MethodInfo> encke_list();
 std::span<const MethodInfo> wide_gauss_list();
 std::span<const MethodInfo> nystrom_list();

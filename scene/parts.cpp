@@ -207,7 +207,7 @@ const MethodInfo* Parts::find_method(std::string_view name) const {
     const std::vector<std::string> aliases = methods::aliases_of(*info);
     if (info->name == name || std::find(aliases.begin(), aliases.end(), name) != aliases.end()) return info;
   }
-  return nullptr;
+  return methods::find_hbvm(name);
 }
 
 std::vector<std::string> Parts::method_names() const {

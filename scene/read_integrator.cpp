@@ -124,6 +124,14 @@ std::int64_t counted_steps(TableReader& reader, std::string_view key) {
   return steps;
 }
 
+const MethodInfo* find_method(TableReader& reader, const std::string& name, const Parts& parts) {
+  try {
+    return parts.find_method(name);
+  } catch (const Error& error) {
+    reader.fail("method", error.message());
+  }
+}
+
 void unknown_method(TableReader& reader, const std::string& name, const Parts& parts) {
   reader.fail("method", fmt::format("unknown method '{}'{}", name,
                                     proposal(name, parts.method_names(), "; see `noether list methods`")));
@@ -136,7 +144,7 @@ void read_method(TableReader& reader, const Parts& parts, SceneIntegrator& made)
   if (const Scheme* scheme = schemes::find(name)) {
     made.scheme = *scheme;
     made.method = std::string(scheme->name);
-  } else if (const MethodInfo* info = parts.find_method(name)) {
+  } else if (const MethodInfo* info = find_method(reader, name, parts)) {
     made.classical = MethodChoice{info, {}};
     made.method = std::string(info->name);
   } else if (letters) {

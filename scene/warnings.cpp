@@ -302,6 +302,13 @@ std::string warning_of(const Encounter& encounter, const std::string& hamiltonia
 }
 
 std::string warning_of(const Evaluations& evaluations, std::string_view method) {
+  if (method.starts_with("hbvm_") || method.starts_with("avf")) {
+    return fmt::format(
+        "in {} of '{}' 64 nodes did not integrate the forces to rounding, as past a kink of a force, so that the "
+        "energy "
+        "was not kept to rounding; take a shorter step",
+        counted(evaluations.unsettled, "step"), method);
+  }
   return fmt::format(
       "in {} of '{}' two bodies were so near to each other that doubles do not tell their pull well enough for errors "
       "below 1e-18; use 'wide_gauss_8'",

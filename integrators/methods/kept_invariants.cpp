@@ -1,0 +1,191 @@
+#include "integrators/methods/kept_invariants.hpp"
+
+#include "numbers/suggest.hpp"
+#include "numbers/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace noether {
+
+namespace {
+
+const std::vector<std::string>& known_invariants() {
+  static const std::vector<std::string> known = {"energy", "momentum", "angular_momentum"};
+  return known;
+}
+
+}  // namespace
+
+std::vector<std::string> LineInvariants::names() const {
+  std::string spaced = invariants.value_or("");
+  std::replace(spaced.begin(), spaced.end(), ',', ' ');
+  return words_of(spaced);
+}
+
+void LineInvariants::check() const {
+  for (const std::string& name : names()) {
+    const auto& known = known_invariants();
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw Error(
+        fmt::format("invariants = \"{}\": there is no invariant '{}'{}", *invariants, name, did_you_mean(name, known)),
+        {.key = "invariants"});
+  }
+}
+
+template <class Real>
+KeptInvariants<Real>::KeptInvariants(const LineInvariants& wanted)
+    : wanted_(wanted), any_(keeps("momentum") || keeps("angular_momentum") || !wanted.own.empty()) {}
+
+template <class Real> bool KeptInvariants<Real>::keeps(std::string_view name) const {
+  const std::vector<std::string> names = wanted_.names();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+template <class Real>
+void KeptInvariants<Real>::bind(const VectorField<Real>& f, std::string_view method, int coefficients) {
+  kept_.clear();
+  if (!any_) return;
+  const FieldClaims field = f.claims();
+  coefficients_ = coefficients;
+  particles_ = f.particles();
+  second_order_ = field.second_order;
+  const Index n = f.size(), half = n / 2;
+  const auto refuse = [&](std::string_view what) {
+    throw SchemeMismatch(
+        fmt::format("method '{}' cannot keep {} of '{}', which does not keep it itself", method, what, field.name),
+        {.key = "invariants"});
+  };
+  if (keeps("momentum") && !field.keeps_momentum) refuse("the momentum");
+  if (keeps("angular_momentum") && !field.keeps_angular_momentum) refuse("the angular momentum");
+  masses_ = field.second_order ? f.masses() : Vector<Real>::Ones(half);
+  weights_.resize(n);
+  for (Index i = 0; i < half; ++i) {
+    weights_[i] = weights_[half + i] = masses_[i] > Real(0) ? Real(1) / masses_[i] : Real(0);
+  }
+  const auto add = [&](Kind kind, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) kept_.push_back({kind, k});
+  };
+  if (keeps("energy")) add(Kind::energy, 1);
+  // Methods for y' = f keep the momentum, so this one is not to lose it.
+  if (field.keeps_momentum) add(Kind::momentum, 3);
+  if (keeps("angular_momentum")) add(Kind::angular_momentum, 3);
+  add(Kind::own, wanted_.own.size());
+  const auto padded = static_cast<std::size_t>((n + 7) / 8 * 8);
+  phi_.assign(kept_.size(), AlignedVector<Real>(lane_count * padded, Real(0)));
+  for (auto* v : {&y_, &f_, &gradient_}) v->setZero(n);
+}
+
+/// gradient_ <- that of one invariant at y_, where the field is f_.
+template <class Real> void KeptInvariants<Real>::find_gradient(const Kept& one) {
+  const Index half = y_.size() / 2;
+  gradient_.setZero();
+  if (one.kind == Kind::own) {
+    const Invariant& own = wanted_.own[one.index];
+    if constexpr (std::is_same_v<Real, double>) {
+      own.gradient(y_, gradient_);
+    } else {
+      own.wide_gradient(y_, gradient_);
+    }
+  } else if (one.kind == Kind::energy) {  // where f is known, so is the gradient of H
+    for (Index i = 0; i < half; ++i) {
+      gradient_[i] = -masses_[i] * f_[half + i];
+      gradient_[half + i] = second_order_ ? masses_[i] * y_[half + i] : f_[i];
+    }
+  } else if (one.kind == Kind::momentum) {
+    gradient_.segment(half + static_cast<Index>(one.index) * particles_, particles_) = masses_.head(particles_);
+  } else {  // sum m (q_a v_b - q_b v_a)
+    const auto axis = static_cast<Index>(one.index);
+    const Index a = (axis + 1) % 3 * particles_, b = (axis + 2) % 3 * particles_;
+    for (Index i = 0; i < particles_; ++i) {
+      const Real& m = masses_[i];
+      gradient_[a + i] = m * y_[half + b + i];
+      gradient_[b + i] = -m * y_[half + a + i];
+      gradient_[half + b + i] = m * y_[a + i];
+      gradient_[half + a + i] = -m * y_[b + i];
+    }
+  }
+}
+
+template <class Real> void KeptInvariants<Real>::begin() {
+  for (auto& one : phi_) std::fill(one.begin(), one.end(), Real(0));
+}
+
+template <class Real>
+void KeptInvariants<Real>::add(const typename LineTable<Real>::Eight& nodes, const Real* states, const Real* rates) {
+  const auto S = static_cast<std::size_t>(coefficients_);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(nodes.nodes); ++k) {
+    for (Index i = 0; i < y_.size(); ++i) {
+      y_[i] = states[lane_count * i + static_cast<Index>(k)];
+      f_[i] = rates[lane_count * i + static_cast<Index>(k)];
+    }
+    for (std::size_t a = 0; a < kept_.size(); ++a) {
+      find_gradient(kept_[a]);
+      Real* phi = phi_[a].data();
+      for (Index i = 0; i < y_.size(); ++i, phi += lane_count) {
+        for (std::size_t j = 0; j < S; ++j) phi[j] += nodes.onto[k][j] * gradient_[i];
+      }
+    }
+  }
+}
+
+/// What each invariant would change by, and how much of it each of them takes away.
+template <class Real> void KeptInvariants<Real>::correct(Real* g) {
+  const auto count = static_cast<Index>(kept_.size());
+  gram_.setZero(count, count);
+  alpha_.setZero(count);
+  for (Index a = 0; a < count; ++a) {
+    const Real* const phi = phi_[static_cast<std::size_t>(a)].data();
+    for (Index i = 0; i < y_.size(); ++i) {
+      for (Index j = 0; j < coefficients_; ++j) {
+        const Index at = lane_count * i + j;
+        const Real part = phi[at] / Real(static_cast<double>(2 * j + 1));
+        alpha_[a] += part * g[at];
+        for (Index b = 0; b <= a; ++b)
+          gram_(a, b) += part * weights_[i] * phi_[static_cast<std::size_t>(b)][static_cast<std::size_t>(at)];
+      }
+    }
+  }
+  solve();
+  for (Index a = 0; a < count; ++a) {
+    const Real* const phi = phi_[static_cast<std::size_t>(a)].data();
+    for (Index i = 0; i < y_.size(); ++i) {
+      for (Index j = 0; j < coefficients_; ++j)
+        g[lane_count * i + j] -= alpha_[a] * weights_[i] * phi[lane_count * i + j];
+    }
+  }
+}
+
+/// alpha <- gram^-1 alpha by Cholesky's factors L; an invariant that the ones before it determine, whose pivot is
+/// rounding, takes nothing.
+template <class Real> void KeptInvariants<Real>::solve() {
+  using std::sqrt;
+  const Index count = alpha_.size();
+  const Real rounding(std::is_same_v<Real, double> ? 0x1p-40 : 0x1p-96);
+  std::vector<bool> counts(static_cast<std::size_t>(count));
+  for (Index a = 0; a < count; ++a) {
+    for (Index b = 0; b < a; ++b) {
+      Real& into = gram_(a, b);
+      for (Index c = 0; c < b; ++c) into -= gram_(a, c) * gram_(b, c);
+      into = counts[static_cast<std::size_t>(b)] ? into / gram_(b, b) : Real(0);
+    }
+    Real pivot = gram_(a, a);
+    for (Index c = 0; c < a; ++c) pivot -= gram_(a, c) * gram_(a, c);
+    counts[static_cast<std::size_t>(a)] = pivot > rounding * gram_(a, a);
+    gram_(a, a) = counts[static_cast<std::size_t>(a)] ? sqrt(pivot) : Real(1);
+    for (Index c = 0; c < a; ++c) alpha_[a] -= gram_(a, c) * alpha_[c];
+    alpha_[a] = counts[static_cast<std::size_t>(a)] ? alpha_[a] / gram_(a, a) : Real(0);
+  }
+  for (Index a = count; a-- > 0;) {
+    for (Index c = a + 1; c < count; ++c) alpha_[a] -= gram_(c, a) * alpha_[c];
+    alpha_[a] = counts[static_cast<std::size_t>(a)] ? alpha_[a] / gram_(a, a) : Real(0);
+  }
+}
+
+template class KeptInvariants<double>;
+template class KeptInvariants<Quad>;
+
+}  // namespace noether
