@@ -35,7 +35,7 @@ namespace detail {
 template <class Real> bool middle_serves(const Real& part, const Real& missing, const Real& scale) {
   using std::abs, std::sqrt;
   const Real epsilon = std::numeric_limits<Real>::epsilon();
-  return part * part <= epsilon || abs(missing) <= Real(64) * epsilon * scale;
+  return part * part <= epsilon || abs(missing) <= Real(4) * epsilon * scale;
 }
 
 /// The mean of -U'(r)/r over r^2 from one value to the other, by Gauss's rule of three points.
@@ -67,7 +67,8 @@ Real secant_of(const Real& from2, const Real& to2, const Real& step, const Terms
   const bool is_short = abs(step) <= Real(0.4 * std::cbrt(std::sqrt(epsilon))) * size;
   if (is_short && (from2 < end2) == (to2 < end2)) {
     const Real mean = mean_force(from2, step, terms), missing = before - after - mean * step / Real(2);
-    if (middle_serves(Real(step / size), missing, Real(abs(before) + abs(after) + abs(mean) * size))) return mean;
+    const Real rounding = Real(64 * epsilon) * (abs(before) + abs(after) + abs(mean) * size);
+    if (step * step <= Real(epsilon) * size * size || abs(missing) <= rounding) return mean;
   }
   return Real(2) * (before - after) / step;
 }

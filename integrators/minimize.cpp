@@ -24,7 +24,7 @@ void MinimizeOptions::check() const {
 namespace {
 
 /// Mixing and time step of the method, as its authors give them.
-constexpr double alpha_start = 0.25, alpha_factor = 0.99, longer = 1.1, shorter = 0.5;
+constexpr double alpha_start = 0.25, alpha_factor = 0.99, longer = 1.1, halved = 0.5;
 /// Steps downhill before the time step grows.
 constexpr int patience = 5;
 /// What is left of an old curvature after a step, and the largest time step times omega.
@@ -219,7 +219,7 @@ class Descent {
   void rest() {
     v_.set_zero();
     downhill_ = 0;
-    dt_ *= shorter;
+    dt_ *= halved;
     alpha_ = alpha_start;
   }
 

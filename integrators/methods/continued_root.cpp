@@ -31,8 +31,7 @@ template <class Real> void ContinuedRoot<Real>::bind(Index unknowns, std::option
   if (form == JacobianForm::sparse) {
     throw SchemeMismatch(
         "jacobian = \"sparse\" needs to know where the tangent of a step can be nonzero, which secants do not tell; "
-        "use "
-        "jacobian = \"matrix_free\" or \"dense\"",
+        "use jacobian = \"matrix_free\" or \"dense\"",
         {.key = "jacobian"});
   }
   matrix_free_ = form ? *form == JacobianForm::matrix_free : unknowns > most_dense_unknowns;
