@@ -289,6 +289,19 @@ TEST_CASE("on stiff springs Newton's iteration solves for S n coefficients, what
   run("avf", {});
 }
 
+TEST_CASE("a step at h omega = 50 that has no solution near it ends the run with its name",
+          "[energy_exact][extremes]") {
+  for (const char* name : {"avf", "hbvm_2"}) {
+    CAPTURE(name);
+    Simulation run(initial_state(Spring{1e6}), classical(Spring{1e6}, method(name)), 0.05);
+    const Outcome outcome = run.run(400);
+    CHECK(outcome.kind == Outcome::Kind::solver_failure);
+    CHECK(outcome.message.find("do not converge with a step of 0.05; give a shorter one") != std::string::npos);
+    CHECK(run.step() == 0);
+    CHECK(run.particles().variables() == Spring{}.start());
+  }
+}
+
 TEST_CASE("what keeps no energy is refused in one line", "[energy_exact]") {
   const auto refusal = [](auto&& make) -> std::string {
     try {
