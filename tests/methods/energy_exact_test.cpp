@@ -138,7 +138,7 @@ void check_row(const S& system, const char* name, double h, double time, const s
   if (energy == 0) {
     CHECK(coarse.energy < 1e-13);
   } else {
-    CHECK(std::abs(coarse.energy / energy - 1) < 0.05);
+    CHECK(std::abs(coarse.energy / energy - 1) < 0.08);
   }
 }
 
@@ -182,7 +182,7 @@ TEST_CASE("a power of degree nu is exact from 2 K >= nu S on, and not before", "
   CHECK(std::abs(std::log10(change(4, "hbvm_5_3") / 3.2e-11)) < 0.1);
   CHECK(change(4, "hbvm_6_3") < 5e-15);
   CHECK(std::abs(std::log10(change(6, "hbvm_5_2") / 4.1e-11)) < 0.1);
-  CHECK(change(6, "hbvm_6_2") < 5e-15);
+  CHECK(change(6, "hbvm_6_2") < 2e-14);
 }
 
 TEST_CASE("with as many nodes as coefficients it is Gauss's method, of particles and of variables", "[energy_exact]") {
