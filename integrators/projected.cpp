@@ -167,7 +167,9 @@ template <class Real> std::optional<bool> Projected<Real>::project(ParticleSyste
   factorize(G_);
   lambda_.setZero(D_.cols());
   bool renewed = false;
-  for (std::int64_t k = 0; k < manifold_.options().iterations; ++k) {
+  std::int64_t tried = 0;
+  while (tried < manifold_.options().iterations) {
+    ++tried;
     step_ = missing_;
     solve(step_);
     moved_ = y_ + D_ * (lambda_ + step_);
@@ -190,11 +192,11 @@ template <class Real> std::optional<bool> Projected<Real>::project(ParticleSyste
     }
     far = near;
   }
-  fail(s);
+  fail(s, tried);
   return std::nullopt;
 }
 
-template <class Real> const Failure* Projected<Real>::fail(const ParticleSystem<Real>& s) {
+template <class Real> const Failure* Projected<Real>::fail(const ParticleSystem<Real>& s, std::int64_t tried) {
   using std::abs;
   Index worst = 0;
   double most = -1;
@@ -206,7 +208,7 @@ template <class Real> const Failure* Projected<Real>::fail(const ParticleSystem<
       Outcome::Kind::solver_failure, -1, "projection",
       fmt::format("no state was found on the invariants at time {:.9g}: {} is off by {:.2g} of its size after {} "
                   "iterations, and its gradients {}; take a shorter step, or fewer invariants",
-                  static_cast<double>(s.clock().time()), manifold_.name(worst), most, manifold_.options().iterations,
+                  static_cast<double>(s.clock().time()), manifold_.name(worst), most, tried,
                   newton_.rank() < missing_.size() ? "depend on others" : "lead nowhere")};
   return &*failure_;
 }
@@ -238,7 +240,7 @@ template <class Real> Advance Projected<Real>::symmetric_step(ParticleSystem<Rea
     const double far = improve(*now_);
     const bool stands =
         far <= (k == 0 ? near_enough() : 1) || (far >= before && far <= rounding_floor) || !std::isfinite(far);
-    if (!stands && k == manifold_.options().iterations) made.failure = fail(*now_);
+    if (!stands && k == manifold_.options().iterations) made.failure = fail(*now_, k);
     if (stands && k > 0) this->integrator_.go_on_from(*now_, s);
     if (stands) ++steps_;
     if (stands) iterations_ += k;

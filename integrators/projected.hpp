@@ -68,7 +68,8 @@ template <class Real> class Projected : public Wrapped<AnyIntegrator<Real>> {
   Advance step_and_project(ParticleSystem<Real>& s, const Span& one);
   Advance symmetric_step(ParticleSystem<Real>& s, const Span& one);
   double improve(ParticleSystem<Real>& s);
-  const Failure* fail(const ParticleSystem<Real>& s);
+  /// @param tried  iterations
+  const Failure* fail(const ParticleSystem<Real>& s, std::int64_t tried);
 
   Manifold<Real> manifold_;
   std::vector<Real> aims_;  ///< values at the start

@@ -49,7 +49,7 @@ struct Silent : Wrapped<AnyHamiltonian<double>> {
   bool can_project() const { return false; }
 };
 
-using Matrix = Eigen::Matrix<Quad, 2, 2>;
+using TwoByTwo = Eigen::Matrix<Quad, 2, 2>;
 using Pair = Eigen::Matrix<Quad, 2, 1>;
 
 Pair state_of(const ParticleSystem<Quad>& s, Index i, int c) {
@@ -74,8 +74,8 @@ std::pair<ParticleSystem<Quad>, ParticleSystem<Quad>> two_steps(const Scheme& sc
 ///
 /// M and the answers L to the noise of each O are measured in a run: z_2 = M z_1 + sum of L xi for every particle.
 /// @param places  of the O's in the word; 127 is one that is joined with the first of the next step
-Matrix kept_covariance(const Scheme& scheme, double dt, const std::vector<std::uint32_t>& places) {
-  Matrix M;
+TwoByTwo kept_covariance(const Scheme& scheme, double dt, const std::vector<std::uint32_t>& places) {
+  TwoByTwo M;
   M.col(0) = state_of(two_steps(scheme, dt, 0, bodies<Quad>(1, Quad(1), Quad(0))).first, 0, 0);
   M.col(1) = state_of(two_steps(scheme, dt, 0, bodies<Quad>(1, Quad(0), Quad(1))).first, 0, 0);
   constexpr Index n = 5;
@@ -86,7 +86,7 @@ Matrix kept_covariance(const Scheme& scheme, double dt, const std::vector<std::u
   const auto rest = [&, &first = one, &second = two](Index i, int c) {
     return Pair(state_of(second, i, c) - M * state_of(first, i, c));
   };
-  Eigen::Matrix<Quad, 2, 2> L = Matrix::Zero();
+  Eigen::Matrix<Quad, 2, 2> L = TwoByTwo::Zero();
   if (places.size() == 1) {
     L.col(0) = rest(0, 0) / xi(0, 0, 0);
   } else {
@@ -101,10 +101,10 @@ Matrix kept_covariance(const Scheme& scheme, double dt, const std::vector<std::u
       CHECK(static_cast<double>(norm2(Vec3<Quad>(left[0], left[1], Quad(0)))) < 1e-56);
     }
   }
-  Matrix S = L * L.transpose();
+  TwoByTwo S = L * L.transpose();
   for (int doublings = 0; doublings < 30; ++doublings) {
     S += M * S * M.transpose();
-    M = Matrix(M * M);
+    M = TwoByTwo(M * M);
   }
   return S;
 }
@@ -125,7 +125,7 @@ TEST_CASE("BAOAB and ABOBA keep the positions of an oscillator in exact equilibr
                            {"OABAO", {0, 127}, variance_x * left, variance_v}};
     for (const Known& one : known) {
       CAPTURE(one.letters, dt);
-      const Matrix S = kept_covariance(word(one.letters), dt, one.places);
+      const TwoByTwo S = kept_covariance(word(one.letters), dt, one.places);
       CHECK(static_cast<double>(abs(S(0, 0) / one.x - Quad(1))) < 1e-27);
       CHECK(static_cast<double>(abs(S(1, 1) / one.v - Quad(1))) < 1e-27);
     }

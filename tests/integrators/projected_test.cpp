@@ -356,6 +356,41 @@ TEST_CASE("a state that cannot be reached ends the run by name", "[integrators][
   CHECK_THAT(outcome.message, Contains("energy is off by"));
 }
 
+namespace {
+
+/// Euler's method by someone who has not heard of projections.
+class OutsideEuler final : public Method<double> {
+ public:
+  std::unique_ptr<Method<double>> clone() const override { return std::make_unique<OutsideEuler>(*this); }
+  MethodClaims claims() const override { return {.name = "outside_euler", .order = 1}; }
+  void bind(const VectorField<double>& f) override { rate_.resize(f.size()); }
+  StepResult step(VectorField<double>& f, const double& t, Vector<double>& y, double h) override {
+    f.rate(t, y, rate_);
+    y += h * rate_;
+    return {.h = h};
+  }
+  void save(SavedState& /*saved*/, const std::string& /*prefix*/) const override {}
+  void load(const SavedState& /*saved*/, const std::string& /*prefix*/) override {}
+
+ private:
+  Vector<double> rate_;
+};
+
+std::unique_ptr<Method<double>> outside_euler(const MethodInfo& /*info*/, const MethodOptions& /*options*/) {
+  return std::make_unique<OutsideEuler>();
+}
+
+}  // namespace
+
+TEST_CASE("a method that does not say what it remembers is refused by name", "[integrators][projected]") {
+  const MethodInfo info{.name = "outside_euler", .make = outside_euler};
+  const auto euler = test::classical_over(Gravity{}, MethodChoice{&info, {}});
+  Simulation<double> bare(test::pairs::kepler_pair(), euler, 0.1);
+  CHECK(bare.run(1).ok());
+  CHECK_THROWS_WITH(Simulation<double>(test::pairs::kepler_pair(), projected(euler, {.onto = to_energy}), 0.1),
+                    Contains("method 'outside_euler' remembers a state that a projection moves"));
+}
+
 TEST_CASE("what cannot be projected onto is refused in one line", "[integrators][projected]") {
   const auto refusal = [](AnyIntegrator<double> integrator, const ProjectionOptions& options) {
     try {
