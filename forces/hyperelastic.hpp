@@ -21,8 +21,8 @@ namespace noether {
 ///     U = sum over tetrahedra V W(C),  C = F^T F,  F = sum_a x_a (x) grad N_a,  f_a = -V F S grad N_a,  S = 2 dW/dC
 ///
 /// F is constant in each: edges of the tetrahedron as they are, times the inverse of those at rest. An element that is
-/// turned inside out, det F <= 0, has no force and ends the run as `inverted_element`. The secants between two states
-/// have the forces F' S' in place of F S, with the mean F' of the two F, and
+/// turned inside out, det F <= 0, ends the run as `inverted_element`, but for trials of an iteration that pass there. The
+/// secants between two states have the forces F' S' in place of F S, with the mean F' of the two F, and
 ///
 ///     S' = S(C') + 2 [W(C1) - W(C0) - S(C') : (C1 - C0)/2] (C1 - C0) / |C1 - C0|^2,  C' = (C0 + C1)/2
 ///
