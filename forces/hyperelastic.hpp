@@ -21,8 +21,8 @@ namespace noether {
 ///     U = sum over tetrahedra V W(C),  C = F^T F,  F = sum_a x_a (x) grad N_a,  f_a = -V F S grad N_a,  S = 2 dW/dC
 ///
 /// F is constant in each: edges of the tetrahedron as they are, times the inverse of those at rest. An element that is
-/// turned inside out, det F <= 0, has no force and ends the run as `inverted_element`. The secants between two states
-/// have the forces F' S' in place of F S, with the mean F' of the two F, and
+/// turned inside out, det F <= 0, ends the run as `inverted_element`, but for trials of an iteration that pass there.
+/// The secants between two states have the forces F' S' in place of F S, with the mean F' of the two F, and
 ///
 ///     S' = S(C') + 2 [W(C1) - W(C0) - S(C') : (C1 - C0)/2] (C1 - C0) / |C1 - C0|^2,  C' = (C0 + C1)/2
 ///
@@ -35,10 +35,9 @@ template <class M> struct Hyperelastic : M {
   detail::KnownElements known = {};  ///< what has been found of the mesh: nothing to be given
 
   static constexpr auto describe() {
-    return part<Hyperelastic>(M::describe(), field<&Hyperelastic::region>("region", "1",
-                                                                          "the part of the mesh that is "
-                                                                          "of this material; all of it "
-                                                                          "unless given"));
+    return part<Hyperelastic>(
+        M::describe(),
+        field<&Hyperelastic::region>("region", "1", "part of the mesh of this material; all of it unless given"));
   }
   static ForceClaims claims() { return {.meshed = true, .charges = false, .exclusions = false}; }
 

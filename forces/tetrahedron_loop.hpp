@@ -158,13 +158,12 @@ template <class Real, class M> class TetrahedronLoop {
     const auto edge = edges(elements_, k, [&](Index i) { return Vec3<Real>(s_.positions()[i]); });
     const Deformation<Real> f = deformation(k, edge);
     const Symmetric<Real> c = f.square();
-    const auto inverted = f.determinant() <= Real(0);
-    if (any(inverted)) note(k);
+    // The force of an element inside out is a number all the same: iterations may pass there on their way.
+    if (any(f.determinant() <= Real(0))) note(k);
     const Real volume(elements_.shape(k, 9));
-    const Real there = select(inverted, Real(std::numeric_limits<double>::quiet_NaN()), volume);
-    const std::array<Vec3<Real>, 3> force = put(k, f.times(stress_of<Real>(material_, c)), there);
+    const std::array<Vec3<Real>, 3> force = put(k, f.times(stress_of<Real>(material_, c)), volume);
     if constexpr (with_totals) {
-      totals.energy += there * material_.energy(c);
+      totals.energy += volume * material_.energy(c);
       for (std::size_t a = 0; a < 3 && with_virial_; ++a) totals.virial.add_outer(edge[a], force[a]);
     }
   }
@@ -180,7 +179,7 @@ template <class Real, class M> class TetrahedronLoop {
       last[a] = edge[a] + way[a];
     }
     const Deformation<Real> f = deformation(k, middle), first = deformation(k, edge), end = deformation(k, last);
-    if (first.determinant() <= Real(0)) note(k);
+    if (first.determinant() <= Real(0) || end.determinant() <= Real(0)) note(k);
     const Symmetric<Real> c0 = first.square(), c1 = end.square(), mean = half * (c0 + c1);
     const Symmetric<Real> change = change_of_square(f, deformation(k, way));
     Symmetric<Real> stress = stress_of<Real>(material_, mean);
@@ -237,12 +236,14 @@ template <class Real, class M> class TetrahedronLoop {
     }
   }
   void tell(ForceSink<Real>& out, Index k) const {
-    const ParticleSystem<Real>& s = from_ != nullptr ? *from_ : s_;
-    const auto edge = edges(elements_, k, [&](Index i) { return Vec3<Real>(s.positions()[i]); });
+    const auto part_in = [&](const ParticleSystem<Real>& s) {
+      const auto edge = edges(elements_, k, [&](Index i) { return Vec3<Real>(s.positions()[i]); });
+      return least(deformation(k, edge).determinant());
+    };
     std::array<Index, 4> particles;
     for (std::size_t c = 0; c < 4; ++c) particles[c] = elements_.particle(k, static_cast<Index>(c));
-    const double part = least(deformation(k, edge).determinant());
-    out.fail(inverted_element(elements_.number(k), particles, part, s.names()));
+    const double part = from_ != nullptr ? std::min(part_in(*from_), part_in(s_)) : part_in(s_);
+    out.fail(inverted_element(elements_.number(k), particles, part, s_.names()));
   }
   /// The smallest of the doubles that a number holds.
   template <class Any> static double least(const Any& x) {

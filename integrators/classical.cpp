@@ -54,6 +54,19 @@ void check_conservative(std::string_view method, const FieldClaims& field) {
 
 }  // namespace
 
+namespace {
+
+/// What forces cannot do where a step has come to: on the way they could not, but that was a trial of its iteration.
+template <class Real>
+std::optional<Failure> failure_at(VectorField<Real>& field, const Real& t, const Vector<Real>& y) {
+  Vector<Real> rates(y.size());
+  field.forget_failure();
+  field.rate(t, y, rates);
+  return field.failure();
+}
+
+}  // namespace
+
 template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
   const MethodClaims method = method_->claims();
   LieField<Real>* const group = field_->on_group();
@@ -125,7 +138,10 @@ template <class Real> Advance Classical<Real>::advance(ParticleSystem<Real>& s, 
     StepResult made = method_->step(*field_, t, y_, most);
     field_->evaluations().rejected += made.rejected;
     // A step of free length can go round what a force cannot do; one that is given cannot.
-    if (fixed && field_->failure() && (made.failure || !y_.allFinite())) made.failure = field_->failure();
+    if (fixed && field_->failure()) {
+      const bool spoiled = made.failure || !y_.allFinite();
+      made.failure = spoiled ? field_->failure() : failure_at(*field_, Real(t + Real(most)), y_);
+    }
     if (made.failure) {
       failure_ = std::move(made.failure);
       done.failure = &*failure_;

@@ -15,37 +15,42 @@
 
 using namespace noether;
 
-const Block block{.cells = {4, 1, 1},
-                  .size = {2, 0.5, 0.5},
-                  .density = 1,
-                  .stretch = {1.05, 0.97, 1.02},
-                  .angular_velocity = {0.3, 2, 1}};
-const HyperelasticForce material{{.lambda = 1000, .mu = 800}};
+const Block bar{.cells = {4, 1, 1},
+                .size = {2, 0.5, 0.5},
+                .density = 1,
+                .stretch = {1.05, 0.97, 1.02},
+                .angular_velocity = {0.3, 2, 1}};
+const HyperelasticForce steel{{.lambda = 1000, .mu = 800}};
 
-/// One line of the table. @return how the run ended
-Outcome tell(const char* method, double step, Simulation<double> sim) {
+/// One line of the table.
+void tell(const char* method, double step, const Outcome& outcome, const Energy& energy,
+          const AngularMomentum& turning) {
+  fmt::print("{:17} {:6} {:10.1e} {:10.1e}  {} at step {}\n", method, step, energy.worst(), turning.worst(),
+             name(outcome.kind), outcome.step);
+}
+
+void follow(const char* method, double step, Simulation<double> sim) {
   auto& energy = sim.every(1, Energy{});
   auto& turning = sim.every(1, AngularMomentum{});
   const Outcome outcome = sim.run(400);
-  fmt::print("{:17} {:6} {:10.1e} {:10.1e}  {}\n", method, step, energy.worst(), turning.worst(), outcome);
-  return outcome;
+  tell(method, step, outcome, energy, turning);
 }
 
 int main() {
   fmt::print("{:17} {:>6} {:>10} {:>10}\n", "method", "step", "energy", "turning");
-  for (const char* name : {"implicit_midpoint", "newmark"}) {
-    static_cast<void>(tell(name, 0.02, Simulation(block.build(), classical(material, method(name)), 0.02)));
+  for (const char* one : {"implicit_midpoint", "newmark"}) {
+    follow(one, 0.02, Simulation(bar.build(), classical(steel, method(one)), 0.02));
   }
-  const auto verlet = compose(KineticPotential(material), schemes::verlet);
-  static_cast<void>(tell("verlet", 0.02, Simulation(block.build(), verlet, 0.02)));
-  static_cast<void>(tell("verlet", 0.001, Simulation(block.build(), verlet, 0.001)));
+  const auto verlet = compose(KineticPotential(steel), schemes::verlet);
+  follow("verlet", 0.02, Simulation(bar.build(), verlet, 0.02));
+  follow("verlet", 0.001, Simulation(bar.build(), verlet, 0.001));
 
-  Simulation sim(block.build(), classical(material, method("simo_tarnow_wong")), 0.02);
+  Simulation sim(bar.build(), classical(steel, method("simo_tarnow_wong")), 0.02);
   auto& energy = sim.every(1, Energy{});
   auto& turning = sim.every(1, AngularMomentum{});
   sim.every(4, io::TrajectoryWriter{"run.h5"});
   const Outcome outcome = sim.run(400);
-  fmt::print("{:17} {:6} {:10.1e} {:10.1e}  {}\n", "simo_tarnow_wong", 0.02, energy.worst(), turning.worst(), outcome);
+  tell("simo_tarnow_wong", 0.02, outcome, energy, turning);
   fmt::print("{}\n", io::digest(sim.particles()));
   return exit_code(outcome);
 }

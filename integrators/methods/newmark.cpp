@@ -76,7 +76,11 @@ std::optional<Failure> Newmark<Real>::solve(VectorField<Real>& f, const Real& t,
     const UpdateSize v = update_size(update_.data(), h * gamma_, y.data() + n, y1_.data() + n, n);
     return UpdateSize{std::max(q.whole, v.whole), std::max(q.each, v.each)};
   };
-  const auto restart = [&] { a1_ = a0_; };
+  // Where steps are long beside the fastest motion, its acceleration has turned: from q1 = q + h v it is nearer.
+  const auto restart = [&] {
+    const Real turned = beta_ > 0 ? Real((beta_ - 0.5) / beta_) : Real(1);
+    for (Index i = 0; i < n; ++i) a1_[i] = turned * a0_[i];
+  };
   if (!renew()) return singular_matrix(h);
   return newton_to_rounding<Real>(correct, restart, renew);
 }
