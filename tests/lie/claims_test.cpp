@@ -63,7 +63,7 @@ TEST_CASE("C25: the variational body keeps its angular momentum in space, not in
   CHECK(std::abs(turning_energy_of(sim.particles()) / turning_energy_of(start) - 1) < 5e-15);
 }
 
-TEST_CASE("C26: a matrix that Kutta's method steps is no rotation after a while", "[claims][lie]") {
+TEST_CASE("C26: a matrix that Kutta's method steps is not a rotation after a while", "[claims][lie]") {
   std::vector<double> y = {1, 0, 0, 0, 1, 0, 0, 0, 1, std::cos(1.1), 0, std::sin(1.1)};
   Simulation sim(initial_state(MatrixOfBody{}, y), classical(MatrixOfBody{}, method("rk4")), 0.1);
   REQUIRE(sim.run(10'000).ok());
