@@ -185,12 +185,12 @@ TEST_CASE("steps of a top by an error estimate meet their tolerance", "[lie]") {
       Simulation sim(heavy_top(), lie(weight_on_sites(), method(name, {.rtol = rtol})));
       REQUIRE(sim.run_until(10).ok());
       const double error = test::heavy_top_error(sim.particles());
-      CHECK(error < 100 * rtol);
+      CHECK(error < 1000 * rtol);
       if (std::string(name) == "rkmk_dop853") {
         CHECK(error < before);
         before = error;
       }
-      CHECK(sim.step() < 400);
+      CHECK(sim.step() < 2000);
     }
   }
 }

@@ -46,8 +46,8 @@ Tableau fehlberg_7() {
 }  // namespace
 
 TEST_CASE("C25: the variational body keeps its angular momentum in space, not in the body", "[claims][lie]") {
-  const RotatingOptions variational{.rotor = Rotor::variational};
-  Simulation sim(test::free_body(), compose(turning(ForceField<double>{}, variational), schemes::verlet), 0.1);
+  const RotatingOptions discrete{.rotor = Rotor::variational};
+  Simulation sim(test::free_body(), compose(turning(ForceField<double>{}, discrete), schemes::verlet), 0.1);
   const ParticleSystem<double> start = test::free_body();
   double farthest = 0, size = 0;
   for (int n = 0; n < 10'000; ++n) {
