@@ -30,8 +30,7 @@ TEST_CASE("on their group bodies of all spins turn beside each other, and what r
   for (const char* name : {"rkmk_dop853", "rkmk_dormand_prince_5"}) {
     for (const SpinAxes axes : {SpinAxes::body, SpinAxes::space}) {
       CAPTURE(name);
-      MethodOptions options{.rtol = 1e-10};
-      options.own = RkmkOptions{.spin_axes = axes};
+      const MethodOptions options{.rtol = 1e-10, .spin_axes = axes};
       const ParticleSystem<double> start = bodies_of_all_spins();
       Simulation sim(start, lie(ForceField<double>{}, method(name, options)));
       REQUIRE(sim.run_until(20).ok());
@@ -56,7 +55,7 @@ TEST_CASE("on their group spins of any size neither lose nor gain", "[extremes][
     CAPTURE(size);
     ParticleSystem<double> s(unit_system("reduced"));
     add_body(s, body_of_inertia("body", 1, {1.3, 2.1, 0.9}), {.spin = size * Vec3<double>(1, 0.2, -0.5)});
-    MethodOptions options{.own = RkmkOptions{.spin_axes = SpinAxes::space}};
+    const MethodOptions options{.spin_axes = SpinAxes::space};
     Simulation sim(s, lie(ForceField<double>{}, method("rkmk_rk4", options)), 0.05 / size);
     REQUIRE(sim.run(200).ok());
     CHECK(sim.particles().column<BodySpin>()[0] == s.column<BodySpin>()[0]);
