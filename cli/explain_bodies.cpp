@@ -42,6 +42,8 @@ std::string rotor_of(const Scene& scene) {
     return fmt::format("exponentials on {}, spins in axes of the {}", on.group == BodyGroup::so3 ? "SO(3)" : "SE(3)",
                        on.spin_axes == SpinAxes::body ? "body" : "space");
   }
+  if (!scene.integrator.classical && !scene.integrator.scheme.rotor.empty())
+    return std::string(scene.integrator.scheme.rotor);
   if (options.rotor != Rotor::axes) return std::string(rotor_name(options.rotor));
   const std::string_view axes = options.axes;
   return fmt::format("axes {} {} {} {} {}", axes[0], axes[1], axes[2], axes[1], axes[0]);

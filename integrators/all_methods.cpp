@@ -106,6 +106,10 @@ void check_groups(const MethodInfo& info, const MethodOptions& options) {
   }
   if (options.jacobian && !info.takes(*linear_solver))
     refuse_option("jacobian", lacks_option(info.name, *linear_solver, "jacobian"));
+  if ((options.group || options.spin_axes) && !info.takes(*bodies_on_group)) {
+    const std::string_view key = options.group ? "group" : "spin_axes";
+    refuse_option(key, lacks_option(info.name, *bodies_on_group, key));
+  }
   for (const OptionGroup* group : info.option_groups()) group->check(options);
 }
 

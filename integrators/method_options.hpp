@@ -26,6 +26,26 @@ template <> struct EnumNames<JacobianForm> {
       {{JacobianForm::dense, "dense"}, {JacobianForm::sparse, "sparse"}, {JacobianForm::matrix_free, "matrix_free"}}};
 };
 
+/// On what group rigid bodies move.
+enum class BodyGroup : std::uint8_t {
+  so3,  ///< orientations by rotations, places along straight lines
+  se3   ///< both together by rigid motions: a body that flies and turns evenly goes along a screw
+};
+/// In whose axes spins (on SE(3) velocities too) go along straight lines.
+enum class SpinAxes : std::uint8_t {
+  body,  ///< Pi' = Pi x Omega + R^T torque
+  space  ///< S' = torque: the spin of a free body stays to the bit, as on its coadjoint orbit
+};
+
+template <> struct EnumNames<BodyGroup> {
+  static constexpr std::array<std::pair<BodyGroup, std::string_view>, 2> values{
+      {{BodyGroup::so3, "so3"}, {BodyGroup::se3, "se3"}}};
+};
+template <> struct EnumNames<SpinAxes> {
+  static constexpr std::array<std::pair<SpinAxes, std::string_view>, 2> values{
+      {{SpinAxes::body, "body"}, {SpinAxes::space, "space"}}};
+};
+
 /// One option as data: its description and its value.
 struct OptionValue {
   using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
@@ -106,10 +126,14 @@ struct MethodOptions {
   std::optional<double> max_step = {};  ///< longest step of adaptive methods [time]; default: any
   /// Of methods that solve linear systems; default: sparse where the field has a `sparsity`, else dense.
   std::optional<JacobianForm> jacobian = {};
-  OwnOptions own = {};  ///< of this method alone
+  std::optional<BodyGroup> group = {};     ///< of methods on groups; default: SO(3)
+  std::optional<SpinAxes> spin_axes = {};  ///< of methods on groups; default: the body's
+  OwnOptions own = {};                     ///< of this method alone
 
   /// The same, with nothing said of tolerances and lengths of steps.
-  MethodOptions without_error_control() const { return {.jacobian = jacobian, .own = own}; }
+  MethodOptions without_error_control() const {
+    return {.jacobian = jacobian, .group = group, .spin_axes = spin_axes, .own = own};
+  }
   /// Options in a text that tells runs apart: what is not told is left out if there was a time without it.
   static bool is_new(std::string_view option) { return option == "max_step"; }
   bool operator==(const MethodOptions&) const = default;
@@ -144,8 +168,26 @@ struct LinearSolver {
   }
 };
 
+/// Keys of methods that step rigid bodies on a Lie group.
+struct BodiesOnGroup {
+  static constexpr std::string_view lacks = "does not step rigid bodies on a group";
+
+  static constexpr auto describe() {
+    return part<MethodOptions>("bodies_on_group", "how rigid bodies stand on a group",
+                               field<&MethodOptions::group>(
+                                   "group", "1",
+                                   "of rigid bodies: so3 turns them and moves their centres along straight lines, se3 "
+                                   "moves both along screws; default: so3"),
+                               field<&MethodOptions::spin_axes>(
+                                   "spin_axes", "1",
+                                   "in whose axes spins of rigid bodies go along straight lines; space keeps that "
+                                   "of a free body to the bit; default: body"));
+  }
+};
+
 inline constexpr const OptionGroup* error_control = &shared_options<ErrorControl>;
 inline constexpr const OptionGroup* linear_solver = &shared_options<LinearSolver>;
+inline constexpr const OptionGroup* bodies_on_group = &shared_options<BodiesOnGroup>;
 
 namespace detail {
 

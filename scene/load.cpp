@@ -250,31 +250,24 @@ class SceneReader {
     made.rotating = options;
   }
 
-  /// A method may turn bodies in a way of its own.
+  /// A method may turn bodies in a way of its own, which the scene then need not say.
   void fit_rotor(const SceneValue& hamiltonian) {
     const TableReader reader(context_, hamiltonian, "[hamiltonian]", "hamiltonian");
     const SceneIntegrator& made = scene_.integrator;
-    RotatingOptions& options = *scene_.hamiltonian.rotating;
-    SceneValue& effective = *scene_.effective.find("hamiltonian");
-    const bool given = hamiltonian.find("rotor") != nullptr;
-    if (made.on_groups()) {
-      if (given) {
-        reader.fail("rotor",
-                    fmt::format("rotor is how splitting methods turn bodies, but '{}' turns them on their group; "
-                                "take it out",
-                                made.method));
-      }
-      effective.erase("rotor");
-    }
-    const std::optional<Rotor> rotor = rotor_of(made.classical ? "" : made.scheme.rotor);
-    if (!rotor) return;
-    if (given && options.rotor != *rotor) {
+    const std::optional<Rotor> own = rotor_of(made.classical ? "" : made.scheme.rotor);
+    if (!made.on_groups() && !own) return;
+    if (hamiltonian.find("rotor") == nullptr) {
+      scene_.effective.find("hamiltonian")->erase("rotor");
+    } else if (!own) {
+      reader.fail("rotor",
+                  fmt::format("rotor is how splitting methods turn bodies, but '{}' turns them on their group; "
+                              "take it out",
+                              made.method));
+    } else if (scene_.hamiltonian.rotating->rotor != *own) {
       reader.fail("rotor",
                   fmt::format("rotor = \"{}\" is not that of '{}', which is \"{}\"; take it out, or use 'verlet'",
-                              rotor_name(options.rotor), made.method, rotor_name(*rotor)));
+                              rotor_name(scene_.hamiltonian.rotating->rotor), made.method, rotor_name(*own)));
     }
-    options.rotor = *rotor;
-    effective.put("rotor", SceneValue::of(std::string(rotor_name(*rotor))));
   }
 
   /// Refuses a box or constraints that the splitting does not know.

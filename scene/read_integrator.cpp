@@ -222,6 +222,7 @@ void read_method_options(TableReader& reader, const Parts& parts, SceneIntegrato
   }
   try {
     check_options(info, options);
+    static_cast<void>(make_method<double>(info, options));  // it may know more than its groups of options do
   } catch (const Error& error) {
     reader.refuse(error);
   }

@@ -80,7 +80,7 @@ std::unique_ptr<Method<Real>> products_of(const MethodInfo& info, const MethodOp
 
 template <const ExponentialTableau& (*table)()> MethodInfo product_method(MethodInfo info) {
   info.family = "lie";
-  info.options = {&own_options<GroupOptions>, nullptr};
+  info.options = {bodies_on_group, nullptr};
   info.order = table().order;
   info.evaluations = static_cast<int>(table().stages.size()) + 1;
   info.on_groups = true;

@@ -204,7 +204,7 @@ std::vector<MethodInfo> make_rkmk_list() {
                               : "rigid bodies under any forces, of velocities too; comparison with published runs";
     made.source = keep(fmt::format("MuntheKaas1999 {}", base->source));
     made.family = "lie";
-    made.options = {&own_options<RkmkOptions>, nullptr};
+    made.options = {bodies_on_group, &own_options<RkmkOptions>};
     made.on_groups = true;
     made.make = rkmk<double>;
     made.make_quad = rkmk<Quad>;

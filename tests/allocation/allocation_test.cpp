@@ -12,12 +12,14 @@
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
+#include "integrators/lie/body_motion.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/allocation/watched.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/molecules.hpp"
 #include "tests/support/planets.hpp"
+#include "tests/support/rigid_bodies.hpp"
 
 #include <atomic>
 #include <cstdlib>
@@ -158,6 +160,23 @@ TEST_CASE("no classical method allocates inside advance", "[allocation]") {
       CHECK(done.steps == 20);
       CHECK(made == 0);
     }
+  }
+}
+
+TEST_CASE("no method on a group allocates inside advance", "[allocation][lie]") {
+  for (const char* name : {"rkmk_rk4", "rkmk_dop853", "crouch_grossman_4", "commutator_free_4"}) {
+    const bool adaptive = methods::find(name)->adaptive;
+    auto integrator = lie(test::weight_on_sites(), method(name));
+    ParticleSystem<double> s = test::heavy_top();
+    s.clock() = adaptive ? Clock<double>::free(0) : Clock<double>::fixed(0, 0.1);
+    integrator.bind(s);
+    integrator.advance(s, {.steps = 20});
+    const long start = allocations;
+    const Advance done = integrator.advance(s, {.steps = 20});
+    const long made = allocations - start;
+    CAPTURE(name);
+    CHECK(done.steps == 20);
+    CHECK(made == 0);
   }
 }
 
