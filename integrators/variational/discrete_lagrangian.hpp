@@ -59,7 +59,7 @@ template <class Ld, class Real> class DiscreteMethod final : public Method<Real>
     return {.name = discrete_name<Ld>(), .order = order, .symplectic = !has_force, .second_order_only = true};
   }
   void bind(const VectorField<Real>& f) override {
-    if (LagrangianField<Real>::behind(f) == nullptr) refuse_without_action(discrete_name<Ld>(), f.claims().name);
+    if (LagrangianField<Real>::behind(f) == nullptr) refuse_without_lagrangian(discrete_name<Ld>(), f.claims().name);
     n_ = f.size() / 2;
     for (Vector<Real>* v : {&q0_, &q1_, &p0_, &left_, &update_, &before_, &minus_, &plus_}) v->resize(n_);
     matrix_.resize(n_, n_);
@@ -95,16 +95,16 @@ template <class Ld, class Real> class DiscreteMethod final : public Method<Real>
   /// The root that continues the motion, as in integrators/variational/galerkin.hpp.
   std::optional<Failure> find_end(VectorField<Real>& f, double h) {
     q1_ = q0_;
-    int renewals = 0;
-    std::optional<Failure> failure = solve(f, h, renewals);
-    if (!failure && renewals == 0) return {};
+    bool near = true;
+    const std::optional<Failure> failure = solve(f, h, near);
+    if (!failure && near) return {};
     const Vector<Real> found = q1_;
     q1_ = q0_;
     const FollowedRoot followed = follow_root([&](double to, double from) {
       const Vector<Real> kept = q1_;
       if (from > 0) q1_ = q0_ + Real(to / from) * (kept - q0_);
-      int more = 0;
-      if (!solve(f, to * h, more) && more == 0) return true;
+      bool near_piece = true;
+      if (!solve(f, to * h, near_piece) && near_piece) return true;
       q1_ = kept;
       return false;
     });
@@ -115,7 +115,7 @@ template <class Ld, class Real> class DiscreteMethod final : public Method<Real>
   }
 
   /// Newton's iteration from the q1 at hand.
-  std::optional<Failure> solve(VectorField<Real>& f, double h, int& renewals) {
+  std::optional<Failure> solve(VectorField<Real>& f, double h, bool& near) {
     const Vector<Real> guess = q1_;
     if (!renew_matrix(f, Real(h))) return singular_action(h, 0, q0_);
     const auto correct = [&]() -> std::optional<UpdateSize> {
@@ -127,12 +127,11 @@ template <class Ld, class Real> class DiscreteMethod final : public Method<Real>
       q1_ += update_;
       return update_size(update_.data(), 1, before_.data(), q1_.data(), n_);
     };
-    const auto restart = [&] { q1_ = guess; };
-    const auto renew = [&] {
-      ++renewals;
-      return renew_matrix(f, Real(h));
+    const auto restart = [&] {
+      q1_ = guess;
+      near = false;  // another matrix may lead to another root
     };
-    return newton_to_rounding<Real>(correct, restart, renew);
+    return newton_to_rounding<Real>(correct, restart, [&] { return renew_matrix(f, Real(h)); });
   }
 
   /// dL_d by component i of q0 (`first`) or of q1.

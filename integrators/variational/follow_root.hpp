@@ -2,8 +2,6 @@
 /// The solution of an implicit step that continues the motion, followed from a step of no length.
 
 #include <algorithm>
-#include <limits>
-#include <optional>
 
 namespace noether {
 

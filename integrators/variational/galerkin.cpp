@@ -3,9 +3,6 @@
 #include "integrators/variational/follow_root.hpp"
 #include "integrators/variational/singular_action.hpp"
 
-#include <algorithm>
-#include <utility>
-
 namespace noether {
 
 namespace {
@@ -61,7 +58,7 @@ template <class Real> MethodClaims Galerkin<Real>::claims() const {
 template <class Real> void Galerkin<Real>::bind(const VectorField<Real>& f) {
   const FieldClaims field = f.claims();
   const auto* lagrangian = LagrangianField<Real>::behind(f);
-  if (lagrangian == nullptr && !field.second_order) refuse_without_action(name_, field.name);
+  if (lagrangian == nullptr && !field.second_order) refuse_without_lagrangian(name_, field.name);
   second_order_ = lagrangian == nullptr;
   velocity_dependent_ = field.velocity_dependent;
   n_ = f.size() / 2;
@@ -104,12 +101,10 @@ template <class Real> StepResult Galerkin<Real>::step(VectorField<Real>& f, cons
 /// The points of the root that continues the motion.
 template <class Real>
 std::optional<Failure> Galerkin<Real>::find_points(VectorField<Real>& f, const Real& t, double h) {
-  // Newton's iteration with the matrix of its guess alone finds the root near it, and no other. Sweeps may hand over to
-  // one such matrix.
-  const int allowed = second_order_ ? 1 : 0;
   guess(h);
-  Solved all = solve(f, t, h);
-  if (all.ok(allowed)) return {};
+  bool near = true;
+  const std::optional<Failure> failure = solve(f, t, h, near);
+  if (!failure && near) return {};
   const Vector<Real> found = points_;
   const FollowedRoot followed = follow_root([&](double to, double from) {
     const Vector<Real> kept = points_;
@@ -118,7 +113,8 @@ std::optional<Failure> Galerkin<Real>::find_points(VectorField<Real>& f, const R
     } else {
       stretch(to / from);
     }
-    if (solve(f, t, to * h).ok(allowed)) return true;
+    bool near_piece = true;
+    if (!solve(f, t, to * h, near_piece) && near_piece) return true;
     points_ = kept;
     return false;
   });
@@ -128,7 +124,7 @@ std::optional<Failure> Galerkin<Real>::find_points(VectorField<Real>& f, const R
     return singular_action(h, followed.reached, Vector<Real>(q0_ + points_.tail(n_)));
   }
   points_ = found;  // stiff motion that takes too long to follow: what Newton's iteration has found
-  return all.failure;
+  return failure;
 }
 
 /// Free motion.
@@ -151,15 +147,11 @@ template <class Real> void Galerkin<Real>::stretch(double by) {
   }
 }
 
+/// The points of a root, from those at hand. @param near  set to false where one matrix, that of the guess, did not
+/// lead there: it may be another root than that near the guess
 template <class Real>
-typename Galerkin<Real>::Solved Galerkin<Real>::solve(VectorField<Real>& f, const Real& t, double h) {
-  Solved result;
+std::optional<Failure> Galerkin<Real>::solve(VectorField<Real>& f, const Real& t, double h, bool& near) {
   guess_ = points_;
-  by_sweeps_ = second_order_;
-  if (!by_sweeps_ && !renew_matrix(f, t, h)) {
-    result.failure = singular_action(h, 0, q0_);
-    return result;
-  }
   const auto correct = [&]() -> std::optional<UpdateSize> {
     evaluate(f, t, h);
     form_residual(h);
@@ -168,13 +160,19 @@ typename Galerkin<Real>::Solved Galerkin<Real>::solve(VectorField<Real>& f, cons
     points_ += update_;
     return update_size(update_.data(), 1, before_.data(), points_.data(), points_.size());
   };
-  const auto restart = [&] { points_ = guess_; };
-  const auto renew = [&] {
-    ++result.renewals;
-    return renew_matrix(f, t, h);
+  by_sweeps_ = second_order_;
+  if (by_sweeps_) {
+    if (!newton_to_rounding<Real>(
+            correct, [] {}, [] { return false; }))
+      return {};
+    points_ = guess_;
+  }
+  if (!renew_matrix(f, t, h)) return singular_action(h, 0, q0_);
+  const auto restart = [&] {
+    points_ = guess_;
+    near = false;
   };
-  result.failure = newton_to_rounding<Real>(correct, restart, renew);
-  return result;
+  return newton_to_rounding<Real>(correct, restart, [&] { return renew_matrix(f, t, h); });
 }
 
 /// q and q' at all nodes, from the points.

@@ -43,15 +43,8 @@ template <class Real> class Galerkin final : public Method<Real> {
   void load(const SavedState& /*saved*/, const std::string& /*prefix*/) override {}
 
  private:
-  /// What came of an iteration.
-  struct Solved {
-    std::optional<Failure> failure;
-    int renewals = 0;  ///< of the matrix
-    bool ok(int allowed) const { return !failure && renewals <= allowed; }
-  };
-
   std::optional<Failure> find_points(VectorField<Real>& f, const Real& t, double h);
-  Solved solve(VectorField<Real>& f, const Real& t, double h);
+  std::optional<Failure> solve(VectorField<Real>& f, const Real& t, double h, bool& near);
   void guess(double h);
   void stretch(double by);
   void form_states(double h);

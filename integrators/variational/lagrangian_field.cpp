@@ -70,7 +70,7 @@ std::optional<Failure> LagrangianField<Real>::velocity(const Real& t, const Vect
     if (change == 0 || size_of(off_) == 0) return {};
     if (change <= 64 * rounding * size && !(change < 0.5 * before)) return {};
     if (!std::isfinite(change)) break;
-    renew = change > 1e-6 * size;  // what is left is done by the same matrix
+    renew = !(change < 0.01 * before);  // else the same matrix does what is left
     before = change;
   }
   return Failure{Outcome::Kind::solver_failure, -1, "velocity",

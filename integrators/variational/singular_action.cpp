@@ -16,11 +16,11 @@ template <class Real> Failure singular_action(double h, double fraction, const V
 template Failure singular_action(double h, double fraction, const Vector<double>& q);
 template Failure singular_action(double h, double fraction, const Vector<Quad>& q);
 
-void refuse_without_action(std::string_view method, std::string_view field) {
-  throw SchemeMismatch(
-      fmt::format("method '{}' needs a Lagrangian, or forces on particles, but '{}' has rates alone; "
-                  "use its equal for y' = f, 'gauss_3' or 'implicit_midpoint'",
-                  method, field));
+void refuse_without_lagrangian(std::string_view method, std::string_view field) {
+  throw SchemeMismatch(fmt::format(
+      "method '{}' makes an action stationary, but '{}' has no Lagrangian; use a method for y' = f, such as "
+      "'gauss_3'",
+      method, field));
 }
 
 }  // namespace noether

@@ -52,6 +52,7 @@ const std::vector<Example> all = {
     {"oblate_saturn", oblate_saturn::program, Length::slow, Bits::of_this_machine},
     {"outer_solar_system", outer_solar_system::program, Length::nightly, Bits::everywhere, 4000},
     {"pendulum", pendulum::program, Length::quick},
+    {"pendulum_by_its_action", pendulum_by_its_action::program, Length::quick, Bits::of_this_machine, 100},
     {"pythagorean", pythagorean::program, Length::nightly, Bits::everywhere, 20'000},
     {"rigid_water", rigid_water::program, Length::quick, Bits::of_this_machine, 100},
     {"robertson", robertson::program, Length::quick, Bits::of_this_machine, 0},

@@ -5,6 +5,7 @@
 #include "examples/bead_on_wire/cycloid.hpp"
 #include "examples/beads_on_sphere/sphere_attraction.hpp"
 #include "examples/oblate_saturn/oblateness.hpp"
+#include "examples/pendulum_by_its_action/action.hpp"
 #include "examples/robertson/kinetics.hpp"
 
 #include "constraints/constraint_residual.hpp"
@@ -177,6 +178,9 @@ namespace examples::outer_solar_system {
 }
 namespace examples::pendulum {
 #include "examples/pendulum/main.cpp"
+}
+namespace examples::pendulum_by_its_action {
+#include "examples/pendulum_by_its_action/main.cpp"
 }
 namespace examples::pythagorean {
 #include "examples/pythagorean/main.cpp"

@@ -123,7 +123,7 @@ TEST_CASE("a step back undoes a step, and areas are kept, in 113 bits", "[variat
 TEST_CASE("forces beside the Lagrangian enter as d'Alembert has it, at the order of the method", "[variational]") {
   const SimplePendulum damped{.damping = 0.3};
   const std::vector<double> start = {2.0, 0.3};
-  const Vector<Quad> truth = test::walked<Quad>(damped, "gauss_8", start, 0.25, 16);
+  const Vector<Quad> truth = test::walked<Quad>(damped, "gauss_5", start, 0.25, 16);
   for (const auto& [name, order] : {std::pair{"variational_midpoint", 2}, std::pair{"galerkin_gauss_2", 4},
                                     std::pair{"variational_trapezoidal", 2}, std::pair{"galerkin_lobatto_3", 4}}) {
     CAPTURE(name);
@@ -135,7 +135,7 @@ TEST_CASE("forces beside the Lagrangian enter as d'Alembert has it, at the order
 
 TEST_CASE("a Lagrangian that depends on time and mixes velocities has its order too", "[variational]") {
   const std::vector<double> start = test::Shaken{}.start();
-  const Vector<Quad> truth = test::walked<Quad>(test::Shaken{}, "gauss_8", start, 0.25, 8);
+  const Vector<Quad> truth = test::walked<Quad>(test::Shaken{}, "gauss_4", start, 0.125, 16);
   for (const auto& [name, order] :
        {std::pair{"variational_midpoint", 2}, std::pair{"galerkin_gauss_2", 4}, std::pair{"galerkin_lobatto_3", 4}}) {
     CAPTURE(name);
@@ -147,19 +147,28 @@ TEST_CASE("a Lagrangian that depends on time and mixes velocities has its order 
 
 TEST_CASE("a discrete Lagrangian that turns singular on its way ends the run with the step and the place",
           "[variational][extremes]") {
-  Simulation<double> falling(initial_state(test::VanishingMass{}, {0.0}, {1.0}),
-                             variational(test::VanishingMass{}, method("variational_midpoint")), 0.05);
-  const Outcome outcome = falling.run(100);
-  CHECK(outcome.kind == Outcome::Kind::solver_failure);
-  // The mass is gone at t = pi/4, in step 16.
-  CHECK(outcome.step == 15);
-  CAPTURE(outcome.message);
-  CHECK(outcome.message.starts_with("the discrete Lagrangian is singular: D1 D2 L_d has no inverse at "));
-  CHECK(outcome.message.find(" of the step of 0.05, near q = (0.9") != std::string::npos);
+  // Without angular momentum the orbit falls into the centre, where the mass r^2 of the angle is gone, at t = 1.1107.
+  for (const char* name : {"variational_midpoint", "galerkin_gauss_2", "galerkin_lobatto_4"}) {
+    Simulation<double> falling(initial_state(PolarKepler{}, {1.0, 0.0}, {0.0, 0.0}),
+                               variational(PolarKepler{}, method(name)), 0.05);
+    const Outcome outcome = falling.run(100);
+    CAPTURE(name, outcome.message);
+    CHECK(outcome.kind == Outcome::Kind::solver_failure);
+    CHECK(outcome.step >= 21);
+    CHECK(outcome.step <= 24);
+    CHECK(outcome.message.find(", near q = (") != std::string::npos);
+  }
   // Steps of 2.5: D1 D2 L_d = -1/h - h cos(q)/4 vanishes where cos(q) = -0.64.
-  Simulation<double> swinging(initial_state(SimplePendulum{}, {0.1}, {1.9}),
-                              variational(SimplePendulum{}, method("variational_midpoint")), 2.5);
-  CHECK(swinging.run(400).message.find("D1 D2 L_d has no inverse at 0.882 of the step of 2.5") != std::string::npos);
+  for (const double momentum : {1.9, 3.0}) {
+    Simulation<double> swinging(initial_state(SimplePendulum{}, {0.1}, {momentum}),
+                                variational(SimplePendulum{}, method("variational_midpoint")), 2.5);
+    const Outcome outcome = swinging.run(400);
+    CAPTURE(outcome.message);
+    CHECK(outcome.kind == Outcome::Kind::solver_failure);
+    CHECK(outcome.message.starts_with("the discrete Lagrangian is singular: D1 D2 L_d has no inverse at 0."));
+    CHECK(outcome.message.find(" of the step of 2.5, near q = (") != std::string::npos);
+    if (momentum == 3) CHECK(outcome.step == 0);
+  }
 }
 
 TEST_CASE("stiff motion goes on where its root does: springs of h omega = 1e4", "[variational][extremes]") {
@@ -168,7 +177,9 @@ TEST_CASE("stiff motion goes on where its root does: springs of h omega = 1e4", 
   for (const char* name : {"variational_midpoint", "galerkin_gauss_2", "galerkin_gauss_4"}) {
     CAPTURE(name);
     Simulation<double> run(s, test::classical_over(HarmonicField{1e8}, method(name)), 1.0);
-    REQUIRE(run.run(200).ok());
+    const Outcome outcome = run.run(200);
+    CAPTURE(outcome.message);
+    REQUIRE(outcome.ok());
     CHECK(std::abs(run.particles().positions()[0][0]) < 1 + 1e-6);
   }
 }

@@ -110,6 +110,6 @@ TEST_CASE("states that do not fit, and fields without an action, are refused in 
                     "method 'newmark' is for q'' = a only, but 'polar_kepler' is a first-order system; use a method "
                     "for y' = f, such as 'dormand_prince_5'");
   CHECK_THROWS_WITH(Simulation(initial_state(Lorenz{}), classical(Lorenz{}, method("galerkin_gauss_2")), 0.1),
-                    "method 'galerkin_gauss_2' needs a Lagrangian, or forces on particles, but 'lorenz' has rates "
-                    "alone; use its equal for y' = f, 'gauss_3' or 'implicit_midpoint'");
+                    "method 'galerkin_gauss_2' is for q'' = a only, but 'lorenz' is a first-order system; use a method "
+                    "for y' = f, such as 'dormand_prince_5'");
 }

@@ -35,14 +35,6 @@ struct Shaken {
   }
 };
 
-/// L = (1 - q^2) q'^2 / 2: the mass vanishes at q = 1, which the motion reaches at t = pi/4 when it starts with p = 1.
-struct VanishingMass {
-  Index size() const { return 1; }
-  template <class Real> Real lagrangian(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& v) const {
-    return (Real(1) - q[0] * q[0]) * v[0] * v[0] / Real(2);
-  }
-};
-
 /// A named method over a Lagrangian, `count` steps of h from (q, p) in any precision.
 template <class Real, class S>
 Vector<Real> walked(const S& system, const char* name, const std::vector<double>& start, double h, long count) {
