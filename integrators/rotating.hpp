@@ -103,6 +103,12 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
       throw Error("constraints hold points, but some particles are rigid bodies; take one of the two out");
     }
     if constexpr (InLanes<real>) check_lanes(s);
+    if (!one_by_one && options_.rotor == Rotor::variational) {
+      throw Error(
+          "rotor = \"variational\" solves an equation for each body, which neither several systems side by side nor "
+          "dual "
+          "numbers can; run the systems one by one, or use rotor = \"exact\"");
+    }
     turned_ = ScalarColumn<real>((s.size() + 7) / 8 * 8);
     failure_.reset();
   }
@@ -138,6 +144,8 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
   }
 
  private:
+  static constexpr bool one_by_one = std::is_same_v<real, double> || std::is_same_v<real, Quad>;
+
   /// @throws Error  where systems side by side differ in what a body is: a point, a line or a body
   static void check_lanes(const ParticleSystem<real>& s) {
     const auto& inertia = s.template column<BodyInertia>();
@@ -156,10 +164,12 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
     const auto& inertia = std::as_const(s).template column<BodyInertia>();
     const auto& spin = std::as_const(s).template column<BodySpin>();
     auto& orientation = s.template column<BodyOrientation>();
-    if (options_.rotor == Rotor::variational) {
-      const std::optional<Failure> failure = turn_all_variationally<real>(s, h, turned_);
-      if (failure && !failure_ && !observing_) failure_ = failure;
-      return;
+    if constexpr (one_by_one) {
+      if (options_.rotor == Rotor::variational) {
+        const std::optional<Failure> failure = turn_all_variationally<real>(s, h, turned_);
+        if (failure && !failure_ && !observing_) failure_ = failure;
+        return;
+      }
     }
     for_blocks(s.size(), [&](Index begin, Index end) {
       if (options_.rotor == Rotor::axes) {

@@ -14,10 +14,10 @@ namespace {
 
 using test::heavy_top, test::turning, test::weight_on_sites;
 
-const RotatingOptions variational{.rotor = Rotor::variational};
+const RotatingOptions by_action{.rotor = Rotor::variational};
 
 double lgvi_error(const std::string& scheme, double h) {
-  return test::heavy_top_error(compose(turning(weight_on_sites(), variational), *schemes::find(scheme)), h);
+  return test::heavy_top_error(compose(turning(weight_on_sites(), by_action), *schemes::find(scheme)), h);
 }
 
 /// The angle of a step of length `hw` about an axis at the rate 1; NaN where there is no turn.
@@ -46,7 +46,7 @@ TEST_CASE("a body that turns too fast for the discrete action ends the run by na
   ParticleSystem<double> s(unit_system("reduced"));
   add_body(s, body_of_inertia("slow", 1, {1, 2, 3}), {.angular_velocity = Vec3<double>(0.1, 0, 0)});
   add_body(s, body_of_inertia("quick", 1, {1, 2, 3}), {.angular_velocity = Vec3<double>(0, 0, 1.001)});
-  Simulation sim(s, compose(turning(ForceField<double>{}, variational), schemes::verlet), 1.0);
+  Simulation sim(s, compose(turning(ForceField<double>{}, by_action), schemes::verlet), 1.0);
   const Outcome outcome = sim.run(10);
   CHECK(outcome.kind == Outcome::Kind::solver_failure);
   CHECK(outcome.message.find("the discrete action has no turn of body 'quick'") != std::string::npos);
@@ -59,7 +59,7 @@ TEST_CASE("the heavy top of the variational rotor has its errors, J_z to the bit
   CHECK(std::abs(std::log2(lgvi_error("lie_group_variational", 0.05) / lgvi_error("lie_group_variational", 0.025)) -
                  2.011) < 0.02);
   CHECK(std::abs(std::log2(lgvi_error("yoshida_4", 0.025) / lgvi_error("yoshida_4", 0.0125)) - 4) < 0.15);
-  Simulation sim(heavy_top(), compose(turning(weight_on_sites(), variational), schemes::lie_group_variational), 0.1);
+  Simulation sim(heavy_top(), compose(turning(weight_on_sites(), by_action), schemes::lie_group_variational), 0.1);
   REQUIRE(sim.run(1000).ok());
   CHECK(sim.particles().column<BodySpin>()[0][2] == 0.9);
   CHECK(std::abs(norm_defect<double>(sim.particles().column<BodyOrientation>()[0])) < 1e-15);
@@ -69,7 +69,7 @@ TEST_CASE("the shadow of the variational rotor is flatter with every order: its 
           "[lie]") {
   double before[3] = {};
   for (const double h : {0.1, 0.05}) {
-    Simulation sim(heavy_top(), compose(turning(weight_on_sites(), variational), schemes::lie_group_variational), h);
+    Simulation sim(heavy_top(), compose(turning(weight_on_sites(), by_action), schemes::lie_group_variational), h);
     auto& shadow = sim.every(1, ShadowHamiltonian<double>({4, 8, 12}));
     REQUIRE(sim.run(std::lround(10 / h)).ok());
     CHECK(shadow.verdict().starts_with("kept"));

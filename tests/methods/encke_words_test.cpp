@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t lanes = 8;
 
-template <class Check> void at_each_level(const Check& check) {
+template <class Check> void words_at_each_level(const Check& check) {
   for (const SimdLevel level : test::all_levels()) {
     const test::AtLevel at(level);
     INFO(name(level));
@@ -105,7 +105,7 @@ Vec3<double> high(const Vec3<DoubleDouble>& a) { return {a[0].high, a[1].high, a
 }  // namespace
 
 TEST_CASE("bodies in lanes move along arcs in double-double with their departures, forth and back", "[encke][lanes]") {
-  at_each_level([] {
+  words_at_each_level([] {
     for (const double h : {0.02, 0.3, 0.5, -0.4}) {
       Step step(h);
       CAPTURE(h);
@@ -136,7 +136,7 @@ TEST_CASE("bodies in lanes move along arcs in double-double with their departure
 }
 
 TEST_CASE("arcs of bodies in lanes without departures are right to 1e-29", "[encke][lanes]") {
-  at_each_level([] {
+  words_at_each_level([] {
     for (const double h : {0.02, 0.3, 0.5, -0.4}) {
       Step step(h);
       for (auto& sum : step.eight.sums) std::memset(sum, 0, sizeof sum);
@@ -158,7 +158,7 @@ TEST_CASE("arcs of bodies in lanes without departures are right to 1e-29", "[enc
 }
 
 TEST_CASE("arcs that lanes do not serve are left to others", "[encke][lanes]") {
-  at_each_level([] {
+  words_at_each_level([] {
     Step far(5);  // most of a turn
     CHECK((far.advance() & 1U) == 1);
     Step flat(0.3);
@@ -177,7 +177,7 @@ TEST_CASE("arcs that lanes do not serve are left to others", "[encke][lanes]") {
 }
 
 TEST_CASE("what rounding takes from weights of the end is in the second word of sums", "[encke][lanes]") {
-  at_each_level([] {
+  words_at_each_level([] {
     Step step(0.3);
     std::array<const EnckeBody*, lanes> all{};
     for (std::size_t m = 0; m < lanes; ++m) {
@@ -202,7 +202,7 @@ TEST_CASE("what rounding takes from weights of the end is in the second word of 
 }
 
 TEST_CASE("the centre of mass goes on evenly", "[encke][lanes]") {
-  at_each_level([] {
+  words_at_each_level([] {
     Step step(0.3);
     const auto center = [&](std::size_t k) {
       Quad sum(get(step.primary, k));
@@ -225,7 +225,7 @@ TEST_CASE("the centre of mass goes on evenly", "[encke][lanes]") {
 
 TEST_CASE("steps of eight bodies have the same bits at every level", "[encke][lanes]") {
   std::vector<std::array<double, lanes>> first;
-  at_each_level([&] {
+  words_at_each_level([&] {
     std::vector<std::array<double, lanes>> rows;
     const auto keep = [&](const double* row) {
       rows.emplace_back();
