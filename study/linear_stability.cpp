@@ -5,6 +5,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/first_order_system.hpp"
+#include "integrators/variational/lagrangian_system.hpp"
 #include "study/multistep_roots.hpp"
 
 #include <Eigen/LU>
@@ -14,6 +15,7 @@
 #include <limits>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace noether {
 
@@ -31,6 +33,24 @@ struct LinearMode {
     const Real a(lambda.real()), b(lambda.imag());
     dy[0] = a * y[0] - b * y[1];
     dy[1] = b * y[0] + a * y[1];
+  }
+};
+
+/// The same as the motion of one coordinate, for methods over a Lagrangian: q'' = 2 Re(lambda) q' - |lambda|^2 q where
+/// lambda is complex, q'' = lambda^2 q where it is real.
+struct ActionMode {
+  std::complex<double> lambda;
+
+  static constexpr auto describe() { return part<ActionMode>("action_mode", "one mode of a Lagrangian system"); }
+  Index size() const { return 1; }
+  template <class Real> Real lagrangian(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& v) const {
+    const double square = lambda.imag() == 0 ? std::norm(lambda) : -std::norm(lambda);
+    return (v[0] * v[0] + Real(square) * q[0] * q[0]) / Real(2);
+  }
+  bool forced() const { return lambda.imag() != 0 && lambda.real() != 0; }
+  template <class Real>
+  void force(const Real& /*t*/, const Vector<Real>& /*q*/, const Vector<Real>& v, Vector<Real>& f) const {
+    f[0] = Real(forced() ? 2 * lambda.real() : 0) * v[0];
   }
 };
 
@@ -85,7 +105,11 @@ StepMatrix classical_step(const MethodChoice& choice, const Mode& mode) {
   const double scale = mode.scale();
   std::unique_ptr<VectorField<double>> field;
   ParticleSystem<double> start(unit_system("reduced"));
-  if (mode.lambda) {
+  if (mode.lambda && make_method<double>(*choice.info, choice.options)->claims().second_order_only) {
+    const ActionMode system{*mode.lambda / scale};
+    field = std::make_unique<LagrangianMotion<ActionMode, double>>(system);
+    start = initial_state(system, std::vector<double>{1, 0});
+  } else if (mode.lambda) {
     const LinearMode system{*mode.lambda / scale};
     field = std::make_unique<SystemMotion<LinearMode, double>>(system);
     start = initial_state(system, {1, 0});

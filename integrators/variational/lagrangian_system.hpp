@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <initializer_list>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -243,6 +244,14 @@ template <class S>
                                                                             const std::vector<double>& p) {
     q.insert(q.end(), p.begin(), p.end());
     return initial_state(system, std::move(q));
+  }
+
+/// The same for lists in braces.
+template <class S>
+  requires LagrangianSystem<S, double> ParticleSystem<double> initial_state(const S& system,
+                                                                            std::initializer_list<double> q,
+                                                                            std::initializer_list<double> p) {
+    return initial_state(system, std::vector<double>(q), std::vector<double>(p));
   }
 
 /// A method over a Lagrangian: `variational(Pendulum{}, method("galerkin_gauss_3"))`, or any classical one.

@@ -149,8 +149,8 @@ TEST_CASE("a discrete Lagrangian that turns singular on its way ends the run wit
           "[variational][extremes]") {
   // Without angular momentum the orbit falls into the centre, where the mass r^2 of the angle is gone, at t = 1.1107.
   for (const char* name : {"variational_midpoint", "galerkin_gauss_2", "galerkin_lobatto_4"}) {
-    Simulation<double> falling(initial_state(PolarKepler{}, {1.0, 0.0}, {0.0, 0.0}),
-                               variational(PolarKepler{}, method(name)), 0.05);
+    Simulation<double> falling(initial_state(PolarKepler{}, {1, 0}, {0, 0}), variational(PolarKepler{}, method(name)),
+                               0.05);
     const Outcome outcome = falling.run(100);
     CAPTURE(name, outcome.message);
     CHECK(outcome.kind == Outcome::Kind::solver_failure);
