@@ -110,14 +110,13 @@ std::span<const MethodInfo> hbvm_list() {
   static const MethodInfo list[] = {
       average_vector_field(),
       average_vector_field_4(),
-      hbvm_info("hbvm_2", "HBVM of 2 coefficients, with as many nodes as rounding asks for",
-                "an energy that must be the same at every step, at order 4; any S as in `hbvm_5`", 2),
+      hbvm_info(
+          "hbvm_2", "HBVM of 2 coefficients, with as many nodes as rounding asks for",
+          "an energy that must be the same at every step, at order 4; any S as in `hbvm_5`, any K as in `hbvm_4_2`", 2),
       hbvm_info("hbvm_3", "HBVM of 3 coefficients, with as many nodes as rounding asks for",
                 "an energy that must be the same at every step, at order 6", 3),
       hbvm_info("hbvm_4", "HBVM of 4 coefficients, with as many nodes as rounding asks for",
                 "an energy that must be the same at every step, at order 8", 4),
-      hbvm_info("hbvm_4_2", "HBVM of 4 nodes and 2 coefficients: exact for energies of degree 4",
-                "polynomial energies of degree nu with any K >= nu S / 2 in `hbvm_K_S`, at order 4", 2),
   };
   return list;
 }
