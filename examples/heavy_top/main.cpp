@@ -40,9 +40,9 @@ ForceField<double> weight() {
 }
 
 /// How far the axis is from where it began after one nod, and has gone round, by so many steps of an integrator.
-template <class I> void tell_nod(const std::string& method, std::string_view turns, I integrator, int steps) {
+void tell_nod(const std::string& method, std::string_view turns, AnyIntegrator<double> integrator, int steps) {
   const double period = 2.62410021994501064743, precession = 0.97016986498882435069;
-  Simulation sim(leaning_top(), std::move(integrator), period / steps);
+  Simulation<double> sim(leaning_top(), std::move(integrator), period / steps);
   if (!sim.run(steps).ok()) return;
   const Mat3<double> r = rotation_matrix<double>(sim.particles().column<BodyOrientation>()[0]);
   const double nod = std::abs(std::acos(r(2, 2)) - 0.5), round = std::abs(std::atan2(r(1, 2), r(0, 2)) - precession);
@@ -51,14 +51,15 @@ template <class I> void tell_nod(const std::string& method, std::string_view tur
 }
 /// By a splitting into turns and kicks.
 void tell_splitting(const std::string& name, Rotor rotor, int steps) {
-  const Rotating<AnyHamiltonian<double>> turning(KineticPotential(weight()), {.rotor = rotor});
-  tell_nod(name, rotor_name(rotor), compose(turning, *schemes::find(name)), steps);
+  const AnyHamiltonian<double> top{KineticPotential{weight()}};
+  const Rotating<AnyHamiltonian<double>> turning(top, {.rotor = rotor});
+  tell_nod(name, rotor_name(rotor), AnyIntegrator<double>(compose(turning, *schemes::find(name))), steps);
 }
 /// By a method on the group of rotations, with steps of one length.
 void tell_group(const std::string& name, int steps) {
   MethodOptions options;
   if (methods::find(name)->adaptive) options.adaptive = false;
-  tell_nod(name, "exponential", lie(weight(), method(name, options)), steps);
+  tell_nod(name, "exponential", AnyIntegrator<double>(lie(weight(), method(name, options))), steps);
 }
 
 int main() {
