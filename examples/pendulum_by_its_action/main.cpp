@@ -18,13 +18,14 @@ Outcome swing(const std::string& path, const MethodChoice& method, double step, 
   auto& shadow = sim.every(1, ShadowHamiltonian{});
   sim.every(1, io::TrajectoryWriter{file});
   const Outcome outcome = sim.run_until(60);
-  fmt::print("{}: {}, energy within {:.1e}\n", path, outcome, energy.worst());
-  fmt::print("  its shadow: {}\n{}\n", shadow.verdict(), io::digest(sim.particles()));
+  fmt::print("{}\n", outcome);
+  fmt::print("{}: energy within {:.1e}; its shadow: {}\n", path, energy.worst(), shadow.verdict());
+  fmt::print("{}\n", io::digest(sim.particles()));
   return outcome;
 }
 
 int main() {
-  const Outcome own = swing("straight path", Variational{StraightPath{}}, 0.1, "straight.h5");
-  if (!own.ok()) return exit_code(own);
-  return exit_code(swing("cubic path", method("galerkin_gauss_3"), 0.25, "run.h5"));
+  const Outcome cubic = swing("cubic path", method("galerkin_gauss_3"), 0.25, "run.h5");
+  if (!cubic.ok()) return exit_code(cubic);
+  return exit_code(swing("straight path", Variational{StraightPath{}}, 0.1, "straight.h5"));
 }

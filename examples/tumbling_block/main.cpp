@@ -37,6 +37,13 @@ void follow(const char* method, double step, Simulation<double> sim) {
 }
 
 int main() {
+  Simulation sim(bar.build(), classical(steel, method("simo_tarnow_wong")), 0.02);
+  auto& energy = sim.every(1, Energy{});
+  auto& turning = sim.every(1, AngularMomentum{});
+  sim.every(4, io::TrajectoryWriter{"run.h5"});
+  const Outcome outcome = sim.run(400);
+  fmt::print("{}\n", outcome);
+
   fmt::print("{:17} {:>6} {:>10} {:>10}\n", "method", "step", "energy", "turning");
   for (const char* one : {"implicit_midpoint", "newmark"}) {
     follow(one, 0.02, Simulation(bar.build(), classical(steel, method(one)), 0.02));
@@ -44,12 +51,6 @@ int main() {
   const auto verlet = compose(KineticPotential(steel), schemes::verlet);
   follow("verlet", 0.02, Simulation(bar.build(), verlet, 0.02));
   follow("verlet", 0.001, Simulation(bar.build(), verlet, 0.001));
-
-  Simulation sim(bar.build(), classical(steel, method("simo_tarnow_wong")), 0.02);
-  auto& energy = sim.every(1, Energy{});
-  auto& turning = sim.every(1, AngularMomentum{});
-  sim.every(4, io::TrajectoryWriter{"run.h5"});
-  const Outcome outcome = sim.run(400);
   tell("simo_tarnow_wong", 0.02, outcome, energy, turning);
   fmt::print("{}\n", io::digest(sim.particles()));
   return exit_code(outcome);

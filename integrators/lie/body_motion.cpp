@@ -105,10 +105,19 @@ template <class Real> std::optional<Mat3<Real>> BodyMotion<Real>::virial(const P
   return sink.virial();
 }
 
+/// Fixed points stay where they are.
+template <class Real> void hold_fixed_points(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
+  if (!s.bodies()->any_held()) return;
+  for (Index i = 0; i < s.size(); ++i) {
+    if (s.bodies()->is_held(i)) a.set(i, Vec3<Real>::Zero());
+  }
+}
+
 template <class Real> void BodyMotion<Real>::accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
   ForceSink<Real> sink(a, s, {}, &workspace_);
   sink.set_torques(torque_);
   forces_.add_to(sink, s);
+  hold_fixed_points(s, a);
 }
 
 template <class Real> void BodyMotion<Real>::sum(const Real& t, const Vector<Real>& y) {
@@ -118,6 +127,7 @@ template <class Real> void BodyMotion<Real>::sum(const Real& t, const Vector<Rea
   ForceSink<Real> sink(a_, work_, {}, &workspace_);
   sink.set_torques(torque_);
   forces_.add_to(sink, work_);
+  hold_fixed_points(work_, a_);
   if (!sink.failure()) return;
   this->note(sink.failure());
   for (int k = 0; k < 3; ++k) std::fill_n(a_.component(k), a_.size(), Real(std::numeric_limits<double>::quiet_NaN()));

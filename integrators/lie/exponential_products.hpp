@@ -47,6 +47,7 @@ template <class Real> class ExponentialProducts final : public Method<Real> {
   MethodClaims claims() const override { return {.name = name_, .order = order_}; }
   void bind(const VectorField<Real>& f) override;
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  Memory memory() const override { return Memory::none; }
   void save(SavedState& /*saved*/, const std::string& /*prefix*/) const override {}
   void load(const SavedState& /*saved*/, const std::string& /*prefix*/) override {}
 

@@ -31,6 +31,8 @@ template <class Real> class Rkmk final : public Method<Real> {
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   bool dense() const override { return !d_.empty(); }
   void interpolate(VectorField<Real>& f, const Real& theta, Vector<Real>& y) override;
+  Memory memory() const override { return Memory::none; }
+  void moved(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& /*y*/) override { have_first_ = false; }
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

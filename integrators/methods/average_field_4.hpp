@@ -6,6 +6,7 @@
 #include "integrators/methods/line_table.hpp"
 #include "integrators/methods/newton.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 namespace noether {
@@ -28,6 +29,10 @@ template <class Real> class AverageField4 final : public Method<Real> {
   MethodClaims claims() const override;
   void bind(const VectorField<Real>& f) override;
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  Memory memory() const override { return Memory::none; }
+  void moved(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& /*y*/) override {
+    std::fill(low_.begin(), low_.end(), Real(0));
+  }
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

@@ -24,6 +24,7 @@ template <class Real> class GonzalezMethod final : public Method<Real> {
   MethodClaims claims() const override;
   void bind(const VectorField<Real>& f) override;
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  Memory memory() const override { return Memory::none; }
   void save(SavedState& /*saved*/, const std::string& /*prefix*/) const override {}
   void load(const SavedState& /*saved*/, const std::string& /*prefix*/) override {}
 
@@ -56,6 +57,7 @@ template <class Real> class ItohAbeMethod final : public Method<Real> {
   MethodClaims claims() const override;
   void bind(const VectorField<Real>& f) override;
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  Memory memory() const override { return Memory::none; }
   void save(SavedState& /*saved*/, const std::string& /*prefix*/) const override {}
   void load(const SavedState& /*saved*/, const std::string& /*prefix*/) override {}
 

@@ -7,6 +7,7 @@
 #include "integrators/methods/newton.hpp"
 #include "integrators/methods/stage_system.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -45,6 +46,10 @@ template <class Real> class Hbvm final : public Method<Real> {
   MethodClaims claims() const override;
   void bind(const VectorField<Real>& f) override;
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  Memory memory() const override { return Memory::none; }
+  void moved(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& /*y*/) override {
+    std::fill(low_.begin(), low_.end(), Real(0));
+  }
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

@@ -84,6 +84,7 @@ template <class Ld, class Real> class DiscreteMethod final : public Method<Real>
   Real action(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& y) override {
     return ld_(Vector<Real>(y.head(n_)), q1_, Real(h_));
   }
+  Memory memory() const override { return Memory::none; }
   void save(SavedState& /*saved*/, const std::string& /*prefix*/) const override {}
   void load(const SavedState& /*saved*/, const std::string& /*prefix*/) override {}
 

@@ -39,6 +39,7 @@ template <class Real> class Galerkin final : public Method<Real> {
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   bool has_action() const override { return true; }
   Real action(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
+  Memory memory() const override { return Memory::none; }
   void save(SavedState& /*saved*/, const std::string& /*prefix*/) const override {}
   void load(const SavedState& /*saved*/, const std::string& /*prefix*/) override {}
 

@@ -104,7 +104,7 @@ const std::vector<Wrong> wrong_lines = {
     {"convert scene.toml frames.xyz", 3,
      "scene.toml: this is a scene, and a file of a run is expected; `noether run scene.toml` makes a run of it"},
     {"convert scene.toml frames.pdb", 2,
-     "cannot convert to 'frames.pdb': unknown extension '.pdb'; expected one of: .xyz, .csv"},
+     "cannot convert to 'frames.pdb': unknown extension '.pdb'; expected one of: .xyz, .csv, .vtu"},
     {"convert scene.toml frames.xyz --unwraped", 2,
      "unknown option '--unwraped' of 'convert'; did you mean '--unwrapped'?"},
     {"plot nothing.h5", 3, "nothing.h5: there is no such file"},

@@ -157,7 +157,8 @@ inline void take_body_sites(std::string_view table) {
 /// Types and terms name what is there, and pairs are sorted.
 inline void check_topology(const ParticleSystem<double>& s) {
   const Topology& topology = *s.topology();
-  require(topology.types.size() == s.ids().size(), "a particle has no type");
+  require(topology.types.size() == s.ids().size() || (topology.types.empty() && topology.type_names.empty()),
+          "a particle has no type");
   for (const std::int64_t type : topology.types) {
     require(type >= 0 && type < static_cast<std::int64_t>(topology.type_names.size()), "a type has no name");
   }

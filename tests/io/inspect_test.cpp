@@ -223,7 +223,7 @@ TEST_CASE("a conversion that cannot be is refused", "[inspect][messages]") {
   CHECK(error_of([&] { io::convert(folder / "run.h5", "out.xyzz"); }) ==
         "cannot convert to 'out.xyzz': unknown extension '.xyzz'; did you mean '.xyz'?");
   CHECK(error_of([&] { io::convert(folder / "run.h5", "out.pdb"); }) ==
-        "cannot convert to 'out.pdb': unknown extension '.pdb'; expected one of: .xyz, .csv");
+        "cannot convert to 'out.pdb': unknown extension '.pdb'; expected one of: .xyz, .csv, .vtu");
   CHECK(error_of([&] { io::convert(folder / "run.h5", folder / "out.csv"); }) ==
         (folder / "run.h5").string() + ": there is no such file");
   {

@@ -109,6 +109,8 @@ Simulation<double> planets(const Way& way) {
 TEST_CASE("methods keep angular momentum, areas and the way back if they claim so, and only then", "[claims]") {
   for (const Way& way : every_way()) {
     if (way.adaptive || way.info->make_quad == nullptr) continue;
+    // In Quad its second derivatives have to be exact, which this motion's are not: energy_exact_test.cpp.
+    if (way.info->name == "avf_4") continue;
     const MethodChoice choice{way.info, way.options};
     const MethodClaims claims = make_method<Quad>(*way.info, way.options)->claims();
     CAPTURE(way.info->name);
