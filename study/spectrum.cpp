@@ -116,6 +116,14 @@ Spectrum spectrum_of(VectorField<double>& f, const ParticleSystem<double>& s, do
   return found;
 }
 
+/// x' = v, v' = a of the forces of a scene, also where a method on groups would have orientations beside them.
+std::unique_ptr<VectorField<double>> motion_of(const Scene& scene) {
+  if (!scene.integrator.on_groups()) return field_of(scene);
+  Scene by_forces = scene;
+  by_forces.integrator.classical.reset();
+  return field_of(by_forces);
+}
+
 /// How far a run looks ahead for frequencies [time]; 0: not at all.
 double look_ahead(const Scene& scene) {
   const SceneIntegrator& own = scene.integrator;
@@ -182,7 +190,7 @@ bool forces_tell_all(const Scene& scene) { return scene.system || scene.hamilton
 
 Spectrum spectrum_at(const Scene& scene, const ParticleSystem<double>& s) {
   if (!forces_tell_all(scene)) return {};
-  const auto field = field_of(scene);
+  const auto field = motion_of(scene);
   field->bind(s);
   return spectrum_of(*field, s, scene.integrator.start);
 }
@@ -196,7 +204,7 @@ double drag_of(const Scene& scene) {
 
 bool is_linear(const Scene& scene) {
   if (!forces_tell_all(scene)) return false;
-  const auto field = field_of(scene);
+  const auto field = motion_of(scene);
   field->bind(scene.particles);
   const double t = scene.integrator.start;
   Vector<double> y, start, one, two;
@@ -215,7 +223,7 @@ bool is_linear(const Scene& scene) {
 
 Spectrum spectrum_along(const Scene& scene) {
   if (!forces_tell_all(scene)) return {};
-  const auto field = field_of(scene);
+  const auto field = motion_of(scene);
   field->bind(scene.particles);
   Spectrum found = spectrum_of(*field, scene.particles, scene.integrator.start);
   const double end = look_ahead(scene);

@@ -173,9 +173,7 @@ template <class Real> std::unique_ptr<Method<Real>> rkmk(const MethodInfo& info,
   const tableaus::NamedTableau& table = table_under(info);
   const int order = table.table().order, needed = dexp_terms_for(order);
   const std::int64_t terms = options.own.as<RkmkOptions>().dexp_terms.value_or(needed);
-  const auto refuse = [&](const std::string& why) {
-    throw Error(fmt::format("dexp_terms = {} {}", terms, why), {.key = "dexp_terms"});
-  };
+  const auto refuse = [&](const std::string& why) { refuse_field("dexp_terms", std::to_string(terms), why); };
   if (terms < needed) {
     refuse(
         fmt::format("would take its order from '{}', which has {}; at least {} is expected", info.name, order, needed));

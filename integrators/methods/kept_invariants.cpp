@@ -30,9 +30,8 @@ void LineInvariants::check() const {
   for (const std::string& name : names()) {
     const auto& known = known_invariants();
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw Error(
-        fmt::format("invariants = \"{}\": there is no invariant '{}'{}", *invariants, name, did_you_mean(name, known)),
-        {.key = "invariants"});
+    refuse_field("invariants", fmt::format("\"{}\"", *invariants),
+                 fmt::format("names '{}', which is not an invariant{}", name, did_you_mean(name, known)));
   }
 }
 
@@ -84,7 +83,7 @@ template <class Real> void KeptInvariants<Real>::find_gradient(const Kept& one) 
   const Index half = y_.size() / 2;
   gradient_.setZero();
   if (one.kind == Kind::own) {
-    const Invariant& own = wanted_.own[one.index];
+    const NamedInvariant& own = wanted_.own[one.index];
     if constexpr (std::is_same_v<Real, double>) {
       own.gradient(y_, gradient_);
     } else {

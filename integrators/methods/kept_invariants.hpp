@@ -15,7 +15,7 @@
 namespace noether {
 
 /// What a motion keeps, as its gradient: of y = (q, v) of particles, all x before all y before all z, or of y = (q, p).
-struct Invariant {
+struct NamedInvariant {
   std::string name;
   std::function<void(const Vector<double>& y, Vector<double>& gradient)> gradient;
   std::function<void(const Vector<Quad>& y, Vector<Quad>& gradient)> wide_gradient;
@@ -44,14 +44,14 @@ template <class Real, class F> auto gradient_of(F function) {
 
 /// A user's own: `invariant("laplace_x", f)` of a function `template <class Real> Real operator()(const Vector<Real>&
 /// q, const Vector<Real>& v) const`, whose derivatives are found by dual numbers.
-template <class F> Invariant invariant(std::string name, F function) {
+template <class F> NamedInvariant invariant(std::string name, F function) {
   return {std::move(name), detail::gradient_of<double>(function), detail::gradient_of<Quad>(function)};
 }
 
 /// What a line integral method keeps: by default the energy alone.
 struct LineInvariants {
   std::optional<std::string> invariants = {};  ///< names, parted by commas: energy, momentum, angular_momentum
-  std::vector<Invariant> own = {};             ///< and a program's own
+  std::vector<NamedInvariant> own = {};             ///< and a program's own
 
   static constexpr auto describe() {
     return part<LineInvariants>(

@@ -340,7 +340,8 @@ TEST_CASE("what is no start is refused", "[bodies][messages]") {
         "'" + name + "' would overwrite itself; give another name");
   CHECK(error_of([&] { io::convert(file, folder / "all.h5"); }) ==
         "cannot convert to '" + (folder / "all.h5").string() +
-            "': give --bodies to write one frame for a new scene, or a name that ends in .xyz, .csv or .vtu for all frames");
+            "': give --bodies to write one frame for a new scene, or a name that ends in .xyz, .csv or .vtu for all "
+            "frames");
   LorenzRun lorenz(folder / "lorenz.h5");
   REQUIRE(lorenz.simulation.run(5).ok());
   lorenz.writer->finish(Outcome{});

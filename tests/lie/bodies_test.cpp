@@ -61,7 +61,10 @@ TEST_CASE("a heavy top on its group has the errors and orders of its methods", "
   CHECK(std::abs(lie_slope("commutator_free_3") - 3.019) < 0.02);
   CHECK(std::abs(lie_slope("commutator_free_4") - 3.938) < 0.02);
   CHECK(std::abs(lie_slope("rkmk_cash_karp_5", 0.1) - 5) < 0.25);
-  CHECK(lie_slope("rkmk_dop853", 0.125) > 7.3);
+  // Of order 8: between steps that are too long for it and rounding there is little room (tests/study measures it in
+  // Quad).
+  CHECK(lie_slope("rkmk_dop853", 0.25) > 6.5);
+  CHECK(lie_top_error("rkmk_dop853", 0.05) < 1e-12);
 }
 
 TEST_CASE("with one commutator less Kutta's method has order 3, and cannot be had", "[lie]") {
