@@ -482,6 +482,7 @@ template <class Real> void Collocation<Real>::load(const SavedState& saved, cons
   load_all("previous", previous_);
 }
 
+template struct StageTable<double>;  // gravity_gauss.cpp has one too
 template class Collocation<double>;
 template class Collocation<Quad>;
 
