@@ -148,7 +148,7 @@ struct IntegratorClaims {
   bool time_dependent = false;
   bool keeps_momentum = true;
   bool keeps_angular_momentum = true;
-  bool angular_momentum = true;  ///< the equations of motion keep it, whatever the method does
+  bool momentum = true, angular_momentum = true;  ///< the equations of motion keep them, whatever the method does
   Memory memory = Memory::none;
   Index constraints = 0;            ///< degrees of freedom they take
   double constraint_tolerance = 0;  ///< relative violation that is left on purpose; 0: rounding

@@ -27,6 +27,7 @@ template <class Real> IntegratorClaims Classical<Real>::claims() const {
           .time_dependent = field.time_dependent,
           .keeps_momentum = field.keeps_momentum && method.keeps_momentum,
           .keeps_angular_momentum = field.keeps_angular_momentum && method.keeps_angular_momentum,
+          .momentum = field.keeps_momentum,
           .angular_momentum = field.keeps_angular_momentum,
           .memory = method_->memory(),
           .variables = field.variables,

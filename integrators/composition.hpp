@@ -78,6 +78,7 @@ template <SplitHamiltonian H> class Composition {
             .time_dependent = claims.time_dependent,
             .keeps_momentum = claims.keeps_momentum,
             .keeps_angular_momentum = claims.keeps_angular_momentum,
+            .momentum = claims.keeps_momentum,
             .angular_momentum = claims.keeps_angular_momentum,
             .constraints = claims.constraints,
             .constraint_tolerance = claims.constraint_tolerance,

@@ -144,7 +144,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     work_.wrap();
     ForceSink<Real> sink(a_, work_, {.energy = true}, &workspace_);
     forces_.add_to(sink, work_);
-    return sink.potential();
+    this->note(sink.failure());
+    return sink.failure() ? std::numeric_limits<Real>::quiet_NaN() : sink.potential();
   }
   Vector<Real> masses() const override { return work_.masses().all().replicate(3, 1); }
   Real lagrangian(const Real& t, const Vector<Real>& y) override {

@@ -157,7 +157,7 @@ void Manifold<Real>::check_particles(const ParticleSystem<Real>& s, const Integr
                       claims.dissipative ? "dissipates it" : "depends on time"));
     }
   }
-  if (options_.has(Invariant::momentum) && !claims.keeps_momentum) {
+  if (options_.has(Invariant::momentum) && !claims.momentum) {
     refuse("the momentum is not conserved here: a force acts from outside; take it out of onto");
   }
   if (options_.has(Invariant::angular_momentum) && !claims.angular_momentum) {

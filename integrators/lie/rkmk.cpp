@@ -127,14 +127,13 @@ template <class Real> void Rkmk<Real>::interpolate(VectorField<Real>& f, const R
 
 /// One estimate, or two: err = |e5|^2 / sqrt(|e5|^2 + 0.01 |e3|^2).
 template <class Real> double Rkmk<Real>::error(VectorField<Real>& f, double h, const Vector<Real>& y) {
-  const auto norm = [&](const std::vector<Real>& weights) {
-    combine(weights, h, error_);
+  const auto norm = [&](const std::vector<Real>& weights, double length) {
+    combine(weights, length, error_);
     return detail::error_on_group(tolerance_, f, h, error_, y, y1_, sizes_);
   };
-  const double one = norm(e_);
-  if (e3_.empty()) return one;
-  const double other = norm(e3_), both = one * one + 0.01 * other * other;
-  return both > 0 ? one * one / std::sqrt(both) : both;
+  if (e3_.empty()) return norm(e_, h);
+  const double five = norm(e_, 1), three = norm(e3_, 1), both = five * five + 0.01 * three * three;
+  return both > 0 ? std::abs(h) * five * five / std::sqrt(both) : both;
 }
 
 template <class Real> void Rkmk<Real>::save(SavedState& saved, const std::string& prefix) const {

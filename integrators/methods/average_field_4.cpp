@@ -19,13 +19,17 @@ template <class Real>
 AverageField4<Real>::AverageField4(const MethodInfo& info, const MethodOptions& /*options*/) : name_(info.name) {}
 
 template <class Real> MethodClaims AverageField4<Real>::claims() const {
-  return {.name = name_, .order = 4, .reversible = true, .energy_exact = exact_, .conservative_only = true};
+  return {.name = name_, .order = 4, .reversible = true, .energy_exact = true, .conservative_only = true};
 }
 
 template <class Real> void AverageField4<Real>::bind(const VectorField<Real>& f) {
   const FieldClaims field = f.claims();
-  exact_ = f.has_derivative();
-  if (!exact_) jacobian_.bind(f, {.form = JacobianForm::matrix_free});
+  if (!f.has_derivative()) {
+    throw SchemeMismatch(
+        fmt::format("method '{}' needs exact derivatives of the forces, and those of '{}' are not known; "
+                    "use 'hbvm_2', which has the same order without",
+                    name_, field.name));
+  }
   second_order_ = field.second_order;
   rated_ = second_order_ ? f.size() / 2 : f.size();
   const auto padded = static_cast<std::size_t>((f.size() + 7) / 8 * 8);
@@ -68,14 +72,8 @@ double AverageField4<Real>::improve(VectorField<Real>& f, const Real& t, const V
   average(f, t, y, h);
   const Real half(h / 2), twelfth = Real(h) * Real(h) / Real(12);
   middle_ = y + half * slope_;
-  if (exact_) {
-    f.derivative(t + half, middle_, Real(0), average_, product_);
-    f.derivative(t + half, middle_, Real(0), product_, fresh_);
-  } else {
-    jacobian_.evaluate(f, t + half, middle_);
-    jacobian_.multiply(f, average_, product_);
-    jacobian_.multiply(f, product_, fresh_);
-  }
+  f.derivative(t + half, middle_, Real(0), average_, product_);
+  f.derivative(t + half, middle_, Real(0), product_, fresh_);
   double worst = 0;
   for (Index begin = 0, count = y.size() / 2; begin < y.size(); begin += count) {
     double change = 0, size = 0;
@@ -113,7 +111,6 @@ bool AverageField4<Real>::sweep(VectorField<Real>& f, const Real& t, const Vecto
 /// Newton's iteration with the matrix of f's linear part: I - h J / 2 + (h J)^3 / 24.
 template <class Real>
 bool AverageField4<Real>::iterate(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
-  if (!exact_) return false;  // the powers of J that the matrix has need all of it
   const Index n = y.size();
   const auto factorize = [&](const Vector<Real>& at) {
     ++f.evaluations().jacobian;
@@ -141,10 +138,15 @@ bool AverageField4<Real>::iterate(VectorField<Real>& f, const Real& t, const Vec
 
 /// As that of `Hbvm`: by the last two coefficients of the rates that the nodes know.
 template <class Real> bool AverageField4<Real>::has_enough_nodes() const {
+  // Of y = (q, p) the halves have units of their own.
+  return second_order_ ? has_enough_nodes(0, rated_)
+                       : has_enough_nodes(0, rated_ / 2) && has_enough_nodes(rated_ / 2, rated_);
+}
+template <class Real> bool AverageField4<Real>::has_enough_nodes(Index begin, Index end) const {
   const LineTable<Real>& table = line_table<Real>(nodes_, 1);
   double worst = 0, largest = 0;
   for (int m = nodes_ - 2; m < nodes_; ++m) {
-    for (Index i = 0; i < rated_; ++i) {
+    for (Index i = begin; i < end; ++i) {
       Real sum(0);
       for (std::size_t e = 0; e < table.eights.size(); ++e) {
         const Real* const rates = rates_.data() + e * states_.size() + lane_count * static_cast<std::size_t>(i);

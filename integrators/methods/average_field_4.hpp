@@ -17,7 +17,6 @@ namespace noether {
 ///
 /// with f = S grad H, so that J = S H'' at the middle of the line gives J^2 F = S H'' S H'' S int grad H: what stands
 /// before the gradient is skew, and H is kept. The average takes 8, 16, ... or 64 nodes, as many as the line asks for.
-/// Where forces have no exact derivatives, J is that of differences, which is not quite what the proof asks for.
 /// @cost 6 to 12 sweeps of 8 evaluations and two products with J; by Newton's iteration one dense Jacobian and the
 ///       factors of a matrix of all rows of y, whose cost is n^3
 /// @source QuispelMcLaren2008
@@ -27,6 +26,7 @@ template <class Real> class AverageField4 final : public Method<Real> {
 
   std::unique_ptr<Method<Real>> clone() const override { return std::make_unique<AverageField4>(*this); }
   MethodClaims claims() const override;
+  /// @throws SchemeMismatch  for forces without exact derivatives
   void bind(const VectorField<Real>& f) override;
   StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   Memory memory() const override { return Memory::none; }
@@ -44,16 +44,16 @@ template <class Real> class AverageField4 final : public Method<Real> {
   bool sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
   bool iterate(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
   bool has_enough_nodes() const;
+  bool has_enough_nodes(Index begin, Index end) const;
 
   std::string_view name_;
   int nodes_ = 8;
-  bool second_order_ = false, exact_ = true;
+  bool second_order_ = false;
   Index rated_ = 0;  ///< variables whose rates are evaluated
   StageArithmetic<Real> sums_;
   AlignedVector<Real> line_, states_, rates_;  ///< the slope in lane 0; eight nodes; rates of all nodes
   Vector<Real> slope_, fresh_, average_, middle_, product_, update_;
   AlignedVector<Real> low_;  ///< rounding errors of y
-  Jacobian<Real> jacobian_;  ///< of differences
   Matrix<Real> J_, matrix_;
   DenseFactors<Real> factors_;
 };

@@ -155,7 +155,8 @@ template <class Real> class CoordinateEquations final : public StepEquations<Rea
         from_p_(y[p_]),
         before_(energy_(y)),
         largest_q_(largest_of(y.head(y.size() / 2))),
-        largest_p_(largest_of(y.tail(y.size() / 2))) {}
+        largest_p_(largest_of(y.tail(y.size() / 2))),
+        motion_(mass > Real(0) ? Real(std::abs(h)) * y.tail(y.size() / 2).cwiseAbs().maxCoeff() : Real(0)) {}
 
   void map(const Real& part, const Vector<Real>& x, Vector<Real>& out) override {
     place(part, x);
@@ -208,8 +209,10 @@ template <class Real> class CoordinateEquations final : public StepEquations<Rea
     const Real way = to - from, scale = variable == q_ ? largest_q_ : largest_p_;
     y_[variable] = to;
     const Real after = energy_(y_);
-    if (abs(way) > sqrt(epsilon) * scale) return {(after - energy) / way, after};
-    const Real length = Real(std::cbrt(static_cast<double>(epsilon))) * scale;
+    // Particles tell by their motion how far a force reaches; at rest, and of systems, the variable does.
+    const bool moves = variable == q_ && motion_ > Real(0);
+    if (abs(way) > (moves ? Real(1e-4) * motion_ : sqrt(epsilon) * scale)) return {(after - energy) / way, after};
+    const Real length = moves ? Real(1e-4) * motion_ : Real(std::cbrt(static_cast<double>(epsilon))) * scale;
     const Real up = from + way / Real(2) + length, down = from + way / Real(2) - length;
     y_[variable] = up;
     const Real above = energy_(y_);
@@ -231,6 +234,7 @@ template <class Real> class CoordinateEquations final : public StepEquations<Rea
   Real mass_;
   bool momentum_first_;
   Real from_q_, from_p_, before_, largest_q_, largest_p_;
+  Real motion_;  ///< how far the fastest coordinate of particles goes in a step [length]
 };
 
 /// What methods by energies alone need of a field. @throws SchemeMismatch  where there is none

@@ -45,11 +45,16 @@ template <class Real> MethodClaims Hbvm<Real>::claims() const {
 
 template <class Real> void Hbvm<Real>::bind(const VectorField<Real>& f) {
   const FieldClaims claims = f.claims();
+  if (form_ && kept_.any()) {
+    throw SchemeMismatch(fmt::format("method '{}' keeps further invariants by sweeps alone, so jacobian has no effect; "
+                                     "take it out",
+                                     name_),
+                         {.key = "jacobian"});
+  }
   kept_.bind(f, name_, coefficients_);
   second_order_ = claims.second_order && !kept_.any();
   halves_ = claims.second_order && kept_.any();
   two_kinds_ = halves_ || claims.canonical;
-  with_velocities_ = second_order_ && claims.velocity_dependent;
   n_ = second_order_ ? f.size() / 2 : f.size();
   const auto padded = static_cast<std::size_t>((n_ + 7) / 8 * 8);
   for (auto* all : {&g_, &fresh_, &part_, &q_, &v_, &previous_}) all->assign(lane_count * padded, Real(0));
@@ -136,12 +141,9 @@ template <class Real> const Real* Hbvm<Real>::rates_at(const Place& at, std::siz
   Real* const place = halves_ ? nullptr : at.f.place_of_stages();
   Real* const q = place != nullptr ? place : q_.data();
   form_states(at, eight, q);
-  if (with_velocities_) {
-    sums_.values(g_.data(), nodes.path, at.y.data() + n_, low_.data() + n_, at.h, v_.data());
-  }
   Real* const own = rates_.data() + eight * g_.size();
   const bool second = second_order_ || halves_;
-  const Real* rates = at.f.rates({times.data(), q, with_velocities_ ? v_.data() : nullptr, nodes.nodes, second}, own);
+  const Real* rates = at.f.rates({times.data(), q, nullptr, nodes.nodes, second}, own);
   if (halves_) {  // q' = v, and v' behind it
     const Index half = lane_count * n_ / 2;
     std::copy_n(rates, half, part_.data());
@@ -212,6 +214,7 @@ template <class Real> bool Hbvm<Real>::is_rounding(const Place& at, double chang
     return most;
   };
   const double kick = std::abs(at.h) * change, little = std::is_same_v<Real, double> ? 1e-13 : 1e-29;
+  if (two_kinds_) return kick < little * std::min(largest(0, n_ / 2), largest(n_ / 2, n_));
   if (!second_order_) return kick < little * largest(0, n_);
   const double moved = std::abs(at.h) * kick, size = largest(0, n_);
   constexpr double ulps = std::is_same_v<Real, double> ? 0x1p-48 : 0x1p-108;
@@ -230,7 +233,7 @@ template <class Real> bool Hbvm<Real>::iterate(const Place& at) {
     for (std::size_t j = 0; second_order_ && j < S; ++j) {
       update_.segment(static_cast<Index>(j) * n_, n_) = -table_->resting[j] / Real(at.h) * at.y.tail(n_);
     }
-    add_update(at);
+    add_update();
   };
   const auto correct = [&]() -> std::optional<UpdateSize> {
     evaluate(at);
@@ -241,7 +244,7 @@ template <class Real> bool Hbvm<Real>::iterate(const Place& at) {
       }
     }
     if (!system_->solve(at.f, update_)) return {};
-    add_update(at);
+    add_update();
     return size_of_update(at);
   };
   const auto renew = [&] {
@@ -255,7 +258,7 @@ template <class Real> bool Hbvm<Real>::iterate(const Place& at) {
   return system_->factorize(at.h) && !newton_to_rounding<Real>(correct, restart, renew);
 }
 
-template <class Real> void Hbvm<Real>::add_update(const Place& /*at*/) {
+template <class Real> void Hbvm<Real>::add_update() {
   for (Index j = 0; j < coefficients_; ++j) {
     for (Index i = 0; i < n_; ++i) g_[static_cast<std::size_t>(lane_count * i + j)] += update_[j * n_ + i];
   }
@@ -305,11 +308,16 @@ template <class Real> UpdateSize Hbvm<Real>::size_of_update(const Place& at) {
   return worst;
 }
 
-/// The size of coefficient m of the rates, of the variable where it is largest, relative to the largest rate.
+/// The size of coefficient m of the rates, of the variable where it is largest, relative to the largest rate; of both
+/// halves, q and v, which have units of their own, the larger.
 template <class Real> double Hbvm<Real>::coefficient_size(int m) const {
+  if (!two_kinds_) return coefficient_size(m, 0, n_);
+  return std::max(coefficient_size(m, 0, n_ / 2), coefficient_size(m, n_ / 2, n_));
+}
+template <class Real> double Hbvm<Real>::coefficient_size(int m, Index begin, Index end) const {
   double worst = 0, largest = 0;
   const auto& weights = table_->spectrum[static_cast<std::size_t>(m)];
-  for (Index i = 0; i < n_; ++i) {
+  for (Index i = begin; i < end; ++i) {
     Real sum(0);
     for (std::size_t e = 0; e < weights.size(); ++e) {
       for (std::size_t k = 0; k < static_cast<std::size_t>(table_->eights[e].nodes); ++k) {

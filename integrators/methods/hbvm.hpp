@@ -71,13 +71,14 @@ template <class Real> class Hbvm final : public Method<Real> {
   std::array<Real, 2> take();
   const Real* rates_at(const Place& at, std::size_t eight);
   void form_states(const Place& at, std::size_t eight, Real* q);
-  void add_update(const Place& at);
+  void add_update();
   UpdateSize size_of_update(const Place& at);
   void take_state(const Place& at, std::size_t eight, std::size_t lane, Vector<Real>& state);
   bool is_rounding(const Place& at, double change) const;
   int nodes_needed(int most) const;
   bool has_enough(int nodes) const;
   double coefficient_size(int m) const;
+  double coefficient_size(int m, Index begin, Index end) const;
   void finish(Vector<Real>& y, double h);
 
   std::string_view name_;
@@ -86,7 +87,7 @@ template <class Real> class Hbvm final : public Method<Real> {
   const LineTable<Real>* table_ = nullptr;
 
   KeptInvariants<Real> kept_;
-  bool second_order_ = false, with_velocities_ = false;
+  bool second_order_ = false;
   bool halves_ = false;     ///< coefficients of both q and v
   bool two_kinds_ = false;  ///< the halves of what has coefficients are of two kinds
   Index n_ = 0;             ///< variables that have coefficients

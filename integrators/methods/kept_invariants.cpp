@@ -40,6 +40,7 @@ KeptInvariants<Real>::KeptInvariants(const LineInvariants& wanted)
     : wanted_(wanted), any_(keeps("momentum") || keeps("angular_momentum") || !wanted.own.empty()) {}
 
 template <class Real> bool KeptInvariants<Real>::keeps(std::string_view name) const {
+  if (!wanted_.invariants) return name == "energy";
   const std::vector<std::string> names = wanted_.names();
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -63,7 +64,7 @@ void KeptInvariants<Real>::bind(const VectorField<Real>& f, std::string_view met
   masses_ = field.second_order ? f.masses() : Vector<Real>::Ones(half);
   weights_.resize(n);
   for (Index i = 0; i < half; ++i) {
-    weights_[i] = weights_[half + i] = masses_[i] > Real(0) ? Real(1) / masses_[i] : Real(0);
+    weights_[i] = weights_[half + i] = masses_[i] > Real(0) ? Real(1) / masses_[i] : Real(1);  // what is of tracers
   }
   const auto add = [&](Kind kind, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) kept_.push_back({kind, k});

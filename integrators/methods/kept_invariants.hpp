@@ -51,7 +51,7 @@ template <class F> NamedInvariant invariant(std::string name, F function) {
 /// What a line integral method keeps: by default the energy alone.
 struct LineInvariants {
   std::optional<std::string> invariants = {};  ///< names, parted by commas: energy, momentum, angular_momentum
-  std::vector<NamedInvariant> own = {};             ///< and a program's own
+  std::vector<NamedInvariant> own = {};        ///< and a program's own
 
   static constexpr auto describe() {
     return part<LineInvariants>(

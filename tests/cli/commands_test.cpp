@@ -216,6 +216,8 @@ TEST_CASE("explain says what a method exact in energy keeps, and what does not l
   CHECK(has(with("itoh_abe"), "\nkeeps E; p not, because of the method; L not, because of the method\n"));
   CHECK(has(with("simo_tarnow_wong", " --set hamiltonian.force.0.type=henon_heiles"),
             "\nkeeps E; p not, because of henon_heiles; L not, because of henon_heiles\n"));
+  CHECK(has(with("gonzalez", " --set hamiltonian.force.0.type=henon_heiles"),
+            "\nkeeps E; p not, because of henon_heiles; L not, because of henon_heiles, the method\n"));
   CHECK_FALSE(has(with("verlet"), "\nkeeps "));
 }
 

@@ -229,3 +229,45 @@ TEST_CASE("discrete gradients refuse what has no energy that is kept", "[discret
   CHECK_THROWS_WITH(classical_over(Gravity{}, method("itoh_abe", {.jacobian = JacobianForm::dense})),
                     "method 'itoh_abe' does not solve linear systems, so jacobian has no effect here; take it out");
 }
+
+namespace {
+
+/// A spring that can be followed up to x = 1.
+struct ShortSpring {
+  static constexpr std::string_view name() { return "short_spring"; }
+  static ForceClaims claims() { return {.keeps_momentum = false}; }
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    for (Index i = 0; i < s.size(); ++i) {
+      const Vec3<Real> x = s.positions()[i];
+      if (static_cast<double>(x[0]) > 1) out.fail({Outcome::Kind::overlap, i, "distance", "the spring is too long"});
+      out.force(i, Vec3<Real>(-x));
+      out.energy(norm2(x) / Real(2));
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a force that fails ends a run by energies alone, too", "[discrete_gradient]") {
+  ParticleSystem<double> s;
+  s.add("bob", 1, {0, 0.1, 0.1}, {2, 0, 0});
+  for (const char* name : {"itoh_abe", "itoh_abe_symmetric", "gonzalez"}) {
+    CAPTURE(name);
+    Simulation run(s, test::classical_over(ShortSpring{}, method(name)), 0.1);
+    const Outcome outcome = run.run(100);
+    CHECK_FALSE(outcome.ok());
+    CHECK(outcome.message == "the spring is too long");
+  }
+}
+
+TEST_CASE("a close pair far from the origin keeps its energy by energies alone", "[discrete_gradient][extremes]") {
+  const double apart = 1e-5, speed = std::sqrt(2 / apart) / 2;
+  ParticleSystem<double> s;
+  s.add("a", 1, {1 + apart / 2, 0, 0}, {0, speed, 0});
+  s.add("b", 1, {1 - apart / 2, 0, 0}, {0, -speed, 0});
+  const double period = 2 * std::acos(-1.0) * std::sqrt(apart * apart * apart / 2);
+  Simulation run(s, test::classical_over(Gravity{.G = 1}, method("itoh_abe_symmetric")), period / 200);
+  const Energy& energy = run.every(1, Energy{});
+  REQUIRE(run.run(400).ok());
+  CHECK(energy.worst() < 1e-8);  // distances are differences of numbers near 1
+}

@@ -332,3 +332,68 @@ TEST_CASE("what keeps no energy is refused in one line", "[energy_exact]") {
   CHECK_THROWS_WITH(test::classical_over(Gravity{}, method("hbvm_2", LineInvariants{.invariants = "engery"})),
                     Catch::StartsWith("invariants = \"engery\" names 'engery', which is not an invariant"));
 }
+
+namespace {
+
+/// H = p^2 / (2 m) + cos q: q' and p' of sizes that have nothing to do with each other.
+struct LightPendulum {
+  double m = 1e-12;
+  Index size() const { return 1; }
+  template <class Real> Real value(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& p) const {
+    using std::cos;
+    return p[0] * p[0] / Real(2 * m) - cos(q[0]);
+  }
+};
+
+/// Of a body on a circle and a tracer, q = (x, x, y, y, z, z): what the tracer turns with.
+struct TracersMomentum {
+  template <class Real> Real operator()(const Vector<Real>& q, const Vector<Real>& v) const {
+    return q[1] * v[3] - q[3] * v[1];
+  }
+};
+
+}  // namespace
+
+TEST_CASE("rates of coordinates and of momenta ask for nodes each by themselves", "[energy_exact]") {
+  for (const char* name : {"avf", "avf_4", "hbvm_2", "hbvm_3"}) {
+    CAPTURE(name);
+    const LightPendulum light;  // a third of a turn to and fro in 8e-6
+    Simulation run(initial_state(light, {2, 0}), classical(light, method(name)), 4e-7);
+    const Energy& energy = run.every(1, Energy{});
+    REQUIRE(run.run(200).ok());
+    CHECK(energy.worst() < 1e-13);
+  }
+}
+
+TEST_CASE("a program's own invariants stand beside the energy, those of tracers too", "[energy_exact]") {
+  ParticleSystem<double> s;
+  s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("tracer", 0, {1, 0, 0}, {0, 1.2, 0});
+  const auto momentum = [](const ParticleSystem<double>& of) {
+    const Vec3<double> x = of.positions()[1], v = of.velocities()[1];
+    return x[0] * v[1] - x[1] * v[0];
+  };
+  const MethodOptions own{.own = LineInvariants{.own = {invariant("L", TracersMomentum{})}}};
+  Simulation run(s, test::classical_over(Gravity{.G = 1}, method("hbvm_2", own)), 0.2);
+  REQUIRE(run.run(100).ok());
+  CHECK(std::abs(momentum(run.particles()) / 1.2 - 1) < 1e-13);
+  // The energy of a pair of masses, too.
+  ParticleSystem<double> pair;
+  pair.add("a", 0.5, {0.5, 0, 0}, {0, 0.6, 0});
+  pair.add("b", 0.5, {-0.5, 0, 0}, {0, -0.6, 0});
+  Simulation both(pair, test::classical_over(Gravity{.G = 1}, method("hbvm_2", own)), 0.2);
+  const Energy& energy = both.every(1, Energy{});
+  REQUIRE(both.run(100).ok());
+  CHECK(energy.worst() < 1e-13);
+  CHECK(both.claims().energy_exact);
+}
+
+TEST_CASE("options that have no effect on line integrals are refused", "[energy_exact][messages]") {
+  ParticleSystem<double> s;
+  s.add("a", 1, {1, 0, 0}, {0, 1, 0});
+  s.add("b", 1, {-1, 0, 0}, {0, -1, 0});
+  const MethodOptions options{.jacobian = JacobianForm::dense,
+                              .own = LineInvariants{.invariants = "energy, angular_momentum"}};
+  CHECK_THROWS_WITH(Simulation(s, test::classical_over(Gravity{.G = 1}, method("hbvm_2", options)), 0.1),
+                    "method 'hbvm_2' keeps further invariants by sweeps alone, so jacobian has no effect; take it out");
+}

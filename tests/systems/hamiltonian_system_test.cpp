@@ -113,6 +113,22 @@ TEST_CASE("a Hamiltonian that depends on time has to say so; then its energy has
   CHECK(run.claims().time_dependent);
 }
 
+/// Driven by a force that does no work at rest in the origin.
+struct PushedAtRest {
+  static std::string_view name() { return "pushed_at_rest"; }
+  static Index size() { return 1; }
+  template <class Real> Real value(const Real& t, const Vector<Real>& q, const Vector<Real>& p) const {
+    using std::cos;
+    return (p[0] * p[0] + q[0] * q[0]) / Real(2) - q[0] * cos(t);
+  }
+};
+
+TEST_CASE("a Hamiltonian that depends on time is seen where it does not at the start", "[hamiltonian_system]") {
+  CHECK_THROWS_WITH(Simulation(initial_state(PushedAtRest{}, {0, 0}), classical(PushedAtRest{}, method("hbvm_2")), 0.1),
+                    "the energy of system 'pushed_at_rest' depends on time; let it say so: static constexpr bool "
+                    "time_dependent = true");
+}
+
 TEST_CASE("a Hamiltonian system is refused particles, other numbers of variables, and monitors of particles",
           "[hamiltonian_system]") {
   const NonseparableOscillator system;
