@@ -1,7 +1,10 @@
 #include "integrators/variational/galerkin.hpp"
 
+#include "integrators/methods/tableau.hpp"
 #include "integrators/variational/follow_root.hpp"
 #include "integrators/variational/singular_action.hpp"
+
+#include <fmt/format.h>
 
 namespace noether {
 
@@ -10,15 +13,8 @@ namespace {
 /// Larger matrices would take minutes a step.
 constexpr Index most_rows = 6000;
 
-template <class Real> std::vector<Real> narrowed(const std::vector<Quad>& list) {
-  std::vector<Real> all;
-  for (const Quad& x : list) all.push_back(static_cast<Real>(x));
-  return all;
-}
-template <class Real> std::vector<std::vector<Real>> narrowed(const std::vector<std::vector<Quad>>& table) {
-  std::vector<std::vector<Real>> all;
-  for (const std::vector<Quad>& row : table) all.push_back(narrowed<Real>(row));
-  return all;
+std::string too_many_unknowns(Index rows) {
+  return fmt::format("its {} unknowns are more than the {} for which it makes a matrix", rows, most_rows);
 }
 
 }  // namespace
@@ -30,11 +26,11 @@ Galerkin<Real>::Galerkin(const MethodInfo& info, const GalerkinTable& table)
       order_(info.order),
       nodes_(static_cast<std::size_t>(table.nodes())),
       degree_(static_cast<std::size_t>(table.degree())),
-      c_(narrowed<Real>(table.c)),
-      b_(narrowed<Real>(table.b)),
-      value_(narrowed<Real>(table.value)),
-      slope_(narrowed<Real>(table.slope)),
-      inverse_(narrowed<Real>(table.inverse)) {
+      c_(as_real<Real>(table.c)),
+      b_(as_real<Real>(table.b)),
+      value_(as_real<Real>(table.value)),
+      slope_(as_real<Real>(table.slope)),
+      inverse_(as_real<Real>(table.inverse)) {
   // Whatever is rounded, the l_k add up to 1 and their slopes to 0: momenta of cyclic coordinates rest on it.
   for (std::size_t i = 0; i < nodes_; ++i) {
     value_[i][0] = Real(1);
@@ -63,6 +59,10 @@ template <class Real> void Galerkin<Real>::bind(const VectorField<Real>& f) {
   velocity_dependent_ = field.velocity_dependent;
   n_ = f.size() / 2;
   const Index rows = static_cast<Index>(degree_) * n_;
+  if (!second_order_ && rows > most_rows) {
+    throw SchemeMismatch(fmt::format("method '{}' cannot step '{}': {}; use an explicit method for y' = f", name_,
+                                     field.name, too_many_unknowns(rows)));
+  }
   for (Vector<Real>* v : {&q0_, &p0_, &v0_}) v->resize(n_);
   for (Vector<Real>* v : {&points_, &guess_, &before_, &residual_, &update_}) v->resize(rows);
   q_.assign(nodes_, Vector<Real>(n_));
@@ -105,6 +105,7 @@ std::optional<Failure> Galerkin<Real>::find_points(VectorField<Real>& f, const R
   bool near = true;
   const std::optional<Failure> failure = solve(f, t, h, near);
   if (!failure && near) return {};
+  if (points_.size() > most_rows) return failure;
   const Vector<Real> found = points_;
   const FollowedRoot followed = follow_root([&](double to, double from) {
     const Vector<Real> kept = points_;
@@ -124,6 +125,7 @@ std::optional<Failure> Galerkin<Real>::find_points(VectorField<Real>& f, const R
     return singular_action(h, followed.reached, Vector<Real>(q0_ + points_.tail(n_)));
   }
   points_ = found;  // stiff motion that takes too long to follow: what Newton's iteration has found
+  if (!failure) evaluate(f, t, h);
   return failure;
 }
 
@@ -166,6 +168,11 @@ std::optional<Failure> Galerkin<Real>::solve(VectorField<Real>& f, const Real& t
             correct, [] {}, [] { return false; }))
       return {};
     points_ = guess_;
+  }
+  if (points_.size() > most_rows) {
+    return Failure{Outcome::Kind::solver_failure, -1, "step",
+                   fmt::format("sweeps over the implicit step of {:.9g} do not converge, and {}; take a smaller step",
+                               h, too_many_unknowns(points_.size()))};
   }
   if (!renew_matrix(f, t, h)) return singular_action(h, 0, q0_);
   const auto restart = [&] {
@@ -236,7 +243,6 @@ template <class Real> void Galerkin<Real>::form_update(double h) {
 /// The matrix of the equations at the present points. @return whether it is regular
 template <class Real> bool Galerkin<Real>::renew_matrix(VectorField<Real>& f, const Real& t, double h) {
   const Index rows = points_.size();
-  if (rows > most_rows) return false;
   by_sweeps_ = false;
   form_states(h);
   matrix_.setZero(rows, rows);

@@ -34,6 +34,23 @@ double apart(const ParticleSystem<double>& a, const ParticleSystem<double>& b) {
                   (a.velocities()[0] - b.velocities()[0]).cwiseAbs().maxCoeff());
 }
 
+/// A spring that stiffens: one root of every step, which turns ever more slowly as the step grows.
+struct StiffeningSpring {
+  double k = 1e6;
+  Index size() const { return 1; }
+  template <class Real> Real lagrangian(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& v) const {
+    return v[0] * v[0] / Real(2) - Real(k / 4) * q[0] * q[0] * q[0] * q[0];
+  }
+};
+
+/// Many coordinates, of which one moves.
+struct FreeCrowd {
+  Index size() const { return 6001; }
+  template <class Real> Real lagrangian(const Real& /*t*/, const Vector<Real>& /*q*/, const Vector<Real>& v) const {
+    return v[0] * v[0] / Real(2);
+  }
+};
+
 }  // namespace
 
 TEST_CASE("the midpoint L_d is the implicit midpoint rule, and the trapezoidal one is verlet, to rounding",
@@ -182,4 +199,29 @@ TEST_CASE("stiff motion goes on where its root does: springs of h omega = 1e4", 
     REQUIRE(outcome.ok());
     CHECK(std::abs(run.particles().positions()[0][0]) < 1 + 1e-6);
   }
+}
+
+TEST_CASE("a root that takes too long to follow has the momentum of its own points", "[variational][extremes]") {
+  LagrangianMotion<StiffeningSpring, double> f(StiffeningSpring{});
+  const auto steps = make_method<double>(*methods::find("variational_midpoint"), {});
+  steps->bind(f);
+  Vector<double> y(2);
+  y << 1, 0;
+  REQUIRE(!steps->step(f, 0, y, 1).failure);
+  // (q1 - q0)/h = (p0 + p1)/2 of the midpoint rule
+  CHECK(y[0] < -0.9);
+  CHECK(std::abs((y[0] - 1) - y[1] / 2) < 1e-9);
+}
+
+TEST_CASE("more unknowns than a matrix may have are told as such, before any of it is followed", "[variational]") {
+  ParticleSystem<double> s;
+  for (int i = 0; i < 2001; ++i) s.add("particle", 1.0, {1, 0, 0}, {0, 0, 0});
+  Simulation<double> run(s, test::classical_over(HarmonicField{1e8}, method("variational_midpoint")), 1.0);
+  const Outcome outcome = run.run(1);
+  CHECK(outcome.kind == Outcome::Kind::solver_failure);
+  CHECK(outcome.message ==
+        "sweeps over the implicit step of 1 do not converge, and its 6003 unknowns are more than the 6000 for which it "
+        "makes a matrix; take a smaller step");
+  const LagrangianMotion<FreeCrowd, double> crowd(FreeCrowd{});
+  CHECK_THROWS_AS(make_method<double>(*methods::find("variational_midpoint"), {})->bind(crowd), SchemeMismatch);
 }
