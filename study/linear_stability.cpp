@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -36,21 +37,20 @@ struct LinearMode {
   }
 };
 
-/// The same as the motion of one coordinate, for methods over a Lagrangian: q'' = 2 Re(lambda) q' - |lambda|^2 q where
-/// lambda is complex, q'' = lambda^2 q where it is real.
+/// The same as the motion of one coordinate, for methods over a Lagrangian: q'' = 2 Re(lambda) q' - |lambda|^2 q. Where
+/// lambda is real that is critical damping, with lambda as its one rate.
 struct ActionMode {
   std::complex<double> lambda;
 
   static constexpr auto describe() { return part<ActionMode>("action_mode", "one mode of a Lagrangian system"); }
   Index size() const { return 1; }
   template <class Real> Real lagrangian(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& v) const {
-    const double square = lambda.imag() == 0 ? std::norm(lambda) : -std::norm(lambda);
-    return (v[0] * v[0] + Real(square) * q[0] * q[0]) / Real(2);
+    return (v[0] * v[0] - Real(std::norm(lambda)) * q[0] * q[0]) / Real(2);
   }
-  bool forced() const { return lambda.imag() != 0 && lambda.real() != 0; }
+  bool forced() const { return lambda.real() != 0; }
   template <class Real>
   void force(const Real& /*t*/, const Vector<Real>& /*q*/, const Vector<Real>& v, Vector<Real>& f) const {
-    f[0] = Real(forced() ? 2 * lambda.real() : 0) * v[0];
+    f[0] = Real(2 * lambda.real()) * v[0];
   }
 };
 
@@ -101,11 +101,25 @@ class ClassicalStep {
 
 bool remembers(const MethodInfo& info) { return info.family == "multistep" || info.name == "bdf"; }
 
+bool is_over_action(const MethodChoice& choice) {
+  return make_method<double>(*choice.info, choice.options)->claims().second_order_only;
+}
+
+/// Whether theory has a mode of `ActionMode` for a scene and a method over a Lagrangian. A real rate is one of damping;
+/// without damping it is one of a saddle, which the solution itself leaves. A discrete Lagrangian of a user knows
+/// nothing of modes.
+bool has_action_mode(const Scene& scene, const MethodChoice& choice, const std::complex<double>& lambda) {
+  const std::span<const MethodInfo> known = methods::variational_list();
+  if (std::none_of(known.begin(), known.end(), [&](const MethodInfo& info) { return &info == choice.info; }))
+    return false;
+  return lambda.imag() != 0 || (lambda.real() < 0 && scene.system && scene.system->field()->claims().dissipative);
+}
+
 StepMatrix classical_step(const MethodChoice& choice, const Mode& mode) {
   const double scale = mode.scale();
   std::unique_ptr<VectorField<double>> field;
   ParticleSystem<double> start(unit_system("reduced"));
-  if (mode.lambda && make_method<double>(*choice.info, choice.options)->claims().second_order_only) {
+  if (mode.lambda && is_over_action(choice)) {
     const ActionMode system{*mode.lambda / scale};
     field = std::make_unique<LagrangianMotion<ActionMode, double>>(system);
     start = initial_state(system, std::vector<double>{1, 0});
@@ -264,6 +278,7 @@ std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, 
   if (made.integrator.classical) {
     const MethodChoice& choice = *made.integrator.classical;
     if (remembers(*choice.info) || choice.info->gravity_only) return {};
+    if (mode.lambda && is_over_action(choice) && !has_action_mode(made, choice, *mode.lambda)) return {};
     return classical_step(choice, mode);
   }
   HamiltonianClaims claims{.alphabet = "AB"};

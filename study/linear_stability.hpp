@@ -17,7 +17,8 @@ namespace noether {
 /// Of a scheme, the product of its letters' matrices; of a classical method, its own step from two unit vectors. A
 /// multistep method remembers more than a state: it has no such matrix.
 using StepMatrix = std::function<Eigen::Matrix2d(double z)>;
-/// @return empty for a multistep method, and for a splitting into Kepler arcs, which is exact on no such mode
+/// @return empty for a multistep method, for a splitting into Kepler arcs, which is exact on no such mode, and for a
+///         method over a Lagrangian at a real rate that is none of damping
 std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, const Mode& mode);
 
 /// Largest modulus of an eigenvalue of a step, less 1: the growth in one step. Growth below 1e-6 is told from rounding

@@ -176,6 +176,22 @@ TEST_CASE("theory of multistep methods is that of their characteristic roots", "
   CHECK(theory("adams_bashforth_4", undamped).accurate > 0.05);
 }
 
+TEST_CASE("a real rate of a Lagrangian system is one of critical damping, or of a saddle", "[stability]") {
+  const auto theory = [](const std::string& method, const std::string& damping, std::complex<double> lambda) {
+    const Scene scene = read_scene("units = 'reduced'\n[system]\ntype = 'pendulum'\ndamping = " + damping +
+                                       "\n[integrator]\nmethod = 'variational_midpoint'\nstep = 0.1\nsteps = 100\n",
+                                   "pendulum.toml");
+    return linear_theory(scene, fixed_candidate(scene, method), {.omega = 0, .rate = 0, .lambda = lambda});
+  };
+  // (1 + z) r^2 - (2 - z^2) r + 1 - z = 0 has a root of -1 at z = 2.
+  CHECK(std::abs(theory("variational_trapezoidal", "5", -3.0).limit.value() - 2) < 1e-6);
+  CHECK(theory("variational_midpoint", "5", -3.0).known);
+  CHECK_FALSE(theory("variational_midpoint", "5", -3.0).limit);
+  CHECK_FALSE(theory("variational_midpoint", "0", -3.0).known);
+  CHECK_FALSE(theory("variational_midpoint", "5", 3.0).known);
+  CHECK(std::abs(theory("variational_trapezoidal", "0", {0, 3}).limit.value() - 2) < 1e-4);
+}
+
 TEST_CASE("measured limits are within 1e-3 of the tabulated ones", "[stability][nightly]") {
   const Scene scene = ball();
   for (const char* name : {"verlet", "yoshida_4", "rk4", "dormand_prince_5", "adams_bashforth_3"}) {
