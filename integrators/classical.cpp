@@ -85,6 +85,7 @@ template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
                     method.name, field_->claims().name));
   }
   field_->bind(s);
+  if (group != nullptr && choice_.info->on_groups) group->check_start(s);
   const FieldClaims field = field_->claims();
   const bool of_lagrangian = method_->has_action() && LagrangianField<Real>::behind(*field_) != nullptr;
   if (method.second_order_only && !field.second_order && !of_lagrangian) {

@@ -9,11 +9,14 @@ namespace noether {
 
 namespace {
 
-/// Distances up to this, in tolerances, may be all that rounding of the state leaves to be gained.
+/// Distances up to this, in units of rounding, may be all that rounding of the state leaves to be gained.
 constexpr double rounding_floor = 64;
 /// A state that is no farther off, where rounding is what is tolerated, is there already: a method that keeps an
 /// invariant drifts so far by its own rounding in some thousand steps.
 constexpr double untouched = 8;
+
+/// The relative error that counts as rounding.
+template <class Real> Real rounding() { return Real(4) * std::numeric_limits<Real>::epsilon(); }
 
 }  // namespace
 
@@ -113,8 +116,7 @@ template <class Real> double Projected<Real>::distance(const ParticleSystem<Real
   double farthest = 0;
   for (Index k = 0; k < g_.size(); ++k) {
     missing_[k] = aims_[static_cast<std::size_t>(k)] - g_[k];
-    const Real tolerated =
-        max(Real(manifold_.options().tolerance), Real(4) * std::numeric_limits<Real>::epsilon()) * scale_[k];
+    const Real tolerated = max(Real(manifold_.options().tolerance), rounding<Real>()) * scale_[k];
     if (missing_[k] == Real(0)) continue;
     const double one = static_cast<double>(Real(abs(missing_[k])) / tolerated);
     if (!(one <= farthest)) farthest = one;
@@ -125,6 +127,13 @@ template <class Real> double Projected<Real>::distance(const ParticleSystem<Real
 
 template <class Real> double Projected<Real>::near_enough() const {
   return manifold_.options().tolerance > 0 ? 1 : untouched;
+}
+
+/// What is tolerated, or what rounding may leave where that is more.
+template <class Real> double Projected<Real>::floor() const {
+  using std::max;
+  const Real least = rounding<Real>();
+  return max(1.0, rounding_floor * static_cast<double>(least / max(Real(manifold_.options().tolerance), least)));
 }
 
 /// Newton's matrix G^T D, each row and column by its own size, so that no unit counts.
@@ -176,7 +185,7 @@ template <class Real> std::optional<bool> Projected<Real>::project(ParticleSyste
     manifold_.scatter(moved_, s);
     ++iterations_;
     const double near = distance(s);
-    if (near > far && far <= rounding_floor) {
+    if (near > far && far <= floor()) {
       moved_ = y_ + D_ * lambda_;
       manifold_.scatter(moved_, s);
       return moved_ != y_;
@@ -184,7 +193,7 @@ template <class Real> std::optional<bool> Projected<Real>::project(ParticleSyste
     lambda_ += step_;
     if (near <= 1) return true;
     if (!(near < far / 2)) {
-      if (near <= rounding_floor) return true;
+      if (near <= floor()) return true;
       if (renewed || !std::isfinite(near)) break;
       manifold_.gradients(this->integrator_, s, G_);
       factorize(G_);
@@ -202,14 +211,19 @@ template <class Real> const Failure* Projected<Real>::fail(const ParticleSystem<
   double most = -1;
   for (Index k = 0; k < missing_.size(); ++k) {
     const double one = static_cast<double>(Real(abs(missing_[k])) / scale_[k]);
-    if (one > most) most = one, worst = k;
+    if (one <= most) continue;
+    most = one, worst = k;
+    if (std::isnan(one)) break;
   }
+  const std::string what =
+      std::isfinite(most) ? fmt::format("{} is off by {:.2g} of its size after {} iterations, and its gradients {}",
+                                        manifold_.name(worst), most, tried,
+                                        newton_.rank() < missing_.size() ? "depend on others" : "lead nowhere")
+                          : fmt::format("{} is not finite after {} iterations", manifold_.name(worst), tried);
   failure_ = Failure{
       Outcome::Kind::solver_failure, -1, "projection",
-      fmt::format("no state was found on the invariants at time {:.9g}: {} is off by {:.2g} of its size after {} "
-                  "iterations, and its gradients {}; take a shorter step, or fewer invariants",
-                  static_cast<double>(s.clock().time()), manifold_.name(worst), most, tried,
-                  newton_.rank() < missing_.size() ? "depend on others" : "lead nowhere")};
+      fmt::format("no state was found on the invariants at time {:.9g}: {}; take a shorter step, or fewer invariants",
+                  static_cast<double>(s.clock().time()), what)};
   return &*failure_;
 }
 
@@ -224,7 +238,7 @@ template <class Real> Advance Projected<Real>::symmetric_step(ParticleSystem<Rea
   manifold_.gradients(this->integrator_, *begin_, G_);
   manifold_.directions(G_, D_begin_);
   lambda_.setZero(G_.cols());
-  double before = std::numeric_limits<double>::infinity();
+  Off before{std::numeric_limits<double>::infinity(), 0};
   for (std::int64_t k = 0;; ++k) {
     if (k > 0) {
       now_->assign_state(*begin_);
@@ -237,10 +251,12 @@ template <class Real> Advance Projected<Real>::symmetric_step(ParticleSystem<Rea
     this->integrator_.settle(s, *now_, {}, std::nullopt, true);
     manifold_.gather(*now_, reached_);
     if (k == 0) moved_ = reached_;
-    const double far = improve(*now_);
+    const Off far = improve(*now_);
+    const bool here = far.invariants <= (k == 0 ? near_enough() : 1) && far.state <= 1,
+               no_nearer = far.most() >= before.most() && far.invariants <= floor() && far.state <= rounding_floor;
     const bool stands =
-        far <= (k == 0 ? near_enough() : 1) || (far >= before && far <= rounding_floor) || !std::isfinite(far);
-    if (!stands && k == manifold_.options().iterations) made.failure = fail(*now_, k);
+        here || no_nearer || (k == 0 && !far.finite());  // what a step makes not finite is told elsewhere
+    if (!stands && (k == manifold_.options().iterations || !far.finite())) made.failure = fail(*now_, k);
     if (stands && k > 0) this->integrator_.go_on_from(*now_, s);
     if (stands) ++steps_;
     if (stands) iterations_ += k;
@@ -251,11 +267,9 @@ template <class Real> Advance Projected<Real>::symmetric_step(ParticleSystem<Rea
 }
 
 /// Puts the end of a symmetric step as it stands into particles, and finds its next correction and that of mu.
-/// @return how far it is from the solution, in units of what is tolerated
-template <class Real> double Projected<Real>::improve(ParticleSystem<Real>& s) {
-  using std::abs;
+template <class Real> auto Projected<Real>::improve(ParticleSystem<Real>& s) -> Off {
   manifold_.scatter(moved_, s);
-  double far = distance(s);
+  Off far{distance(s), 0};
   manifold_.gradients(this->integrator_, s, G_);
   manifold_.directions(G_, D_);
   const Vector<Real> r = reached_ + D_ * lambda_ - moved_;
@@ -266,8 +280,8 @@ template <class Real> double Projected<Real>::improve(ParticleSystem<Real>& s) {
     const Real size = moved_.segment(begin, count).template lpNorm<Eigen::Infinity>();
     const Real off = r.segment(begin, count).template lpNorm<Eigen::Infinity>();
     if (off == Real(0)) continue;
-    const double here = static_cast<double>(off / (Real(4) * std::numeric_limits<Real>::epsilon() * size));
-    if (!(here <= far)) far = here;
+    const double here = static_cast<double>(off / (rounding<Real>() * size));
+    if (!(here <= far.state)) far.state = here;
   }
   factorize(G_);
   Vector<Real> change = missing_ - G_.transpose() * r;

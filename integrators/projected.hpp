@@ -6,6 +6,8 @@
 #include "integrators/own_equations.hpp"
 #include "integrators/wrapped.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -61,13 +63,22 @@ template <class Real> class Projected : public Wrapped<AnyIntegrator<Real>> {
   double distance(const ParticleSystem<Real>& s);
   /// The distance up to which a state is left as it is.
   double near_enough() const;
+  /// The distance up to which one that gets no nearer stands as it is.
+  double floor() const;
   void factorize(const Matrix<Real>& G);
   void solve(Vector<Real>& multiplier) const;
   /// Brings a settled state back. @return whether it was moved; empty: no state was found
   std::optional<bool> project(ParticleSystem<Real>& s);
   Advance step_and_project(ParticleSystem<Real>& s, const Span& one);
   Advance symmetric_step(ParticleSystem<Real>& s, const Span& one);
-  double improve(ParticleSystem<Real>& s);
+  /// How far the end of a symmetric step is from its invariants, in units of what is tolerated, and from where it is
+  /// to be, in units of rounding.
+  struct Off {
+    double invariants, state;
+    double most() const { return std::max(invariants, state); }
+    bool finite() const { return std::isfinite(invariants) && std::isfinite(state); }
+  };
+  Off improve(ParticleSystem<Real>& s);
   /// @param tried  iterations
   const Failure* fail(const ParticleSystem<Real>& s, std::int64_t tried);
 

@@ -1,6 +1,7 @@
 #include "integrators/lie/group_system.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace noether {
 
@@ -63,6 +64,19 @@ template <class Real> void GroupSystemField<Real>::bind(const ParticleSystem<Rea
   if (static_cast<Index>(s.variables().size()) == size() && s.size() == 0) return;
   throw Error(fmt::format("system '{}' has {} variables, but it was given {} and {} particles", this->claims().name,
                           size(), s.variables().size(), s.size()));
+}
+template <class Real> void GroupSystemField<Real>::check_start(const ParticleSystem<Real>& s) const {
+  Vector<Real> y;
+  gather(s, y);
+  const auto check = [&](Index at, const char* of, Index which) {
+    const double defect = std::abs(static_cast<double>(norm_defect<Real>(quaternion_at<Real>(y, at))));
+    if (defect <= farthest_from_group) return;
+    throw Error(fmt::format(
+        "the quaternion of {} {} of system '{}' is no rotation: |q|^2 - 1 is {:.3g}, but at most {:g} is expected", of,
+        which + 1, this->claims().name, defect, farthest_from_group));
+  };
+  for (Index i = 0; i < n_; ++i) check(4 * i, "rotation", i);
+  for (Index i = 0; i < m_; ++i) check(4 * n_ + 7 * i, "motion", i);
 }
 template <class Real> void GroupSystemField<Real>::gather(const ParticleSystem<Real>& s, Vector<Real>& y) const {
   y.resize(size());

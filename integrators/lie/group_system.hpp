@@ -58,6 +58,7 @@ template <class Real> class GroupSystemField : public LieField<Real> {
   void bracket(const Vector<Real>& u, const Vector<Real>& v, Vector<Real>& out) override;
   void sizes(const Vector<Real>& y, const Vector<Real>& y1, double h, Vector<double>& out) const override;
   void bind(const ParticleSystem<Real>& s) override;
+  void check_start(const ParticleSystem<Real>& s) const override;
   void gather(const ParticleSystem<Real>& s, Vector<Real>& y) const override;
   void scatter(const Vector<Real>& y, ParticleSystem<Real>& s) const override;
   EnergyTerms<Real> energy(const ParticleSystem<Real>& /*s*/) override { return {}; }

@@ -5,6 +5,9 @@
 
 namespace noether {
 
+/// How far a start may be beside its group: |Y^T Y - 1| of matrices, |q|^2 - 1 of quaternions.
+inline constexpr double farthest_from_group = 1e-9;
+
 /// y' = A(t, y) y, where A is an element of a Lie algebra and y stands where its group acts: orientations of bodies,
 /// places and orientations together, matrices of rotations; spins and speeds beside them move along straight lines.
 ///
@@ -18,6 +21,9 @@ namespace noether {
 template <class Real> class LieField : public VectorField<Real> {
  public:
   LieField<Real>* on_group() final { return this; }
+  /// Refuses a state beside the group, where methods on it would not stay: it is asked by them alone.
+  /// @throws Error
+  virtual void check_start(const ParticleSystem<Real>& /*s*/) const {}
 
   /// Length of an element of the algebra.
   virtual Index algebra() const = 0;

@@ -40,15 +40,18 @@ template <class Real> void solve_small(SmallMatrix<Real>& A, SmallMatrix<Real>& 
   }
 }
 
+/// An element of Y^T Y - 1.
+template <class Real> Real defect_at(const SmallMatrix<Real>& Y, Index i, Index k) {
+  Real sum = i == k ? Real(-1) : Real(0);
+  for (Index j = 0; j < Y.rows(); ++j) sum += Y(j, i) * Y(j, k);
+  return sum;
+}
+
 /// Y (3 - Y^T Y)/2: orthogonal to the square of the error of Y.
 template <class Real> void orthogonalize(SmallMatrix<Real>& Y, SmallMatrix<Real>& work, SmallMatrix<Real>& defect) {
   const Index n = Y.rows();
   for (Index i = 0; i < n; ++i) {
-    for (Index k = 0; k < n; ++k) {
-      Real sum = i == k ? Real(-1) : Real(0);
-      for (Index j = 0; j < n; ++j) sum += Y(j, i) * Y(j, k);
-      defect(i, k) = sum;
-    }
+    for (Index k = 0; k < n; ++k) defect(i, k) = defect_at(Y, i, k);
   }
   multiply_small(Y, defect, work);
   for (Index i = 0; i < n; ++i) {
@@ -154,6 +157,24 @@ template <class Real> void RotationField<Real>::bind(const ParticleSystem<Real>&
   if (static_cast<Index>(s.variables().size()) == size() && s.size() == 0) return;
   throw Error(fmt::format("system '{}' has {} variables, but it was given {} and {} particles", this->claims().name,
                           size(), s.variables().size(), s.size()));
+}
+template <class Real> void RotationField<Real>::check_start(const ParticleSystem<Real>& s) const {
+  Vector<Real> y;
+  SmallMatrix<Real> Y(n_, n_);
+  gather(s, y);
+  rows_into(y, Y);
+  double worst = 0;
+  for (Index i = 0; i < n_; ++i) {
+    for (Index k = 0; k <= i; ++k) {
+      const double found = std::abs(static_cast<double>(defect_at(Y, i, k)));
+      if (!(found <= worst)) worst = found;
+    }
+  }
+  if (worst <= farthest_from_group) return;
+  throw Error(fmt::format(
+      "the matrix Y of system '{}' is no rotation: |Y^T Y - 1| is {:.3g}, but at most {:g} is expected of a method on "
+      "rotations",
+      this->claims().name, worst, farthest_from_group));
 }
 template <class Real> void RotationField<Real>::gather(const ParticleSystem<Real>& s, Vector<Real>& y) const {
   y.resize(size());

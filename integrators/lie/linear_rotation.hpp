@@ -80,6 +80,7 @@ template <class Real> class RotationField : public LieField<Real> {
     out.setOnes(algebra());
   }
   void bind(const ParticleSystem<Real>& s) override;
+  void check_start(const ParticleSystem<Real>& s) const override;
   void gather(const ParticleSystem<Real>& s, Vector<Real>& y) const override;
   void scatter(const Vector<Real>& y, ParticleSystem<Real>& s) const override;
   EnergyTerms<Real> energy(const ParticleSystem<Real>& /*s*/) override { return {}; }

@@ -356,6 +356,61 @@ TEST_CASE("a state that cannot be reached ends the run by name", "[integrators][
   CHECK_THAT(outcome.message, Contains("energy is off by"));
 }
 
+TEST_CASE("a tolerance is what may be left, and not 64 of it", "[integrators][projected]") {
+  // Thrown up, and by Euler's second step higher than its energy reaches, by 2 % of that energy.
+  ParticleSystem<double> thrown;
+  thrown.add("stone", 1, {0, 0, 0}, {0, 0, 1});
+  const auto euler = test::classical_over(UniformField{{0, 0, -1}}, method("euler"));
+  Simulation<double> up(
+      thrown,
+      projected(euler, {.onto = to_energy, .how = Projection::oblique, .moves = Moves::velocities, .tolerance = 1e-3}),
+      0.51);
+  const Outcome outcome = up.run(1);
+  CHECK(outcome.kind == Outcome::Kind::solver_failure);
+  CHECK_THAT(outcome.message, Contains("energy is off by"));
+
+  for (const double tolerance : {1e-3, 1e-6, 1e-14}) {
+    for (const Projection how : {Projection::orthogonal, Projection::symmetric}) {
+      CAPTURE(tolerance, static_cast<int>(how));
+      Simulation<double> sim(test::pairs::kepler_pair(),
+                             pair_held("verlet", {.onto = to_energy, .how = how, .tolerance = tolerance}),
+                             test::pairs::turn / 200);
+      const auto& energy = sim.every(1, Energy());
+      const Outcome end = sim.run(400);
+      INFO(end.message);
+      CHECK(end.ok());
+      CHECK(energy.worst() < 8 * tolerance + 1e-14);  // |T| + |U| is 7 |H| at the pericenter
+    }
+  }
+}
+
+namespace {
+
+/// A number that grows, and its logarithm, which is not conserved: there is nothing to be reached beyond e.
+struct Growth {
+  static constexpr auto describe() { return part<Growth>("growth", "a number that grows"); }
+  Index size() const { return 1; }
+  template <class Real> void rates(const Real& /*t*/, const Vector<Real>& y, Vector<Real>& dy) const { dy[0] = y[0]; }
+  std::vector<double> start() const { return {1}; }
+};
+struct Logarithm {
+  template <class Real> Real operator()(const Vector<Real>& y) const {
+    using std::log;
+    return Real(log(y[0]));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a trial of a symmetric step that diverges is not the end of the step", "[integrators][projected]") {
+  Simulation<double> sim(initial_state(Growth{}),
+                         projected(classical(Growth{}, method("euler")), {.how = Projection::symmetric}, Logarithm{}),
+                         3.0);
+  const Outcome outcome = sim.run(1);
+  CHECK(outcome.kind == Outcome::Kind::solver_failure);
+  CHECK_THAT(outcome.message, Contains("an invariant of your own is not finite after 1 iterations"));
+}
+
 namespace {
 
 /// Euler's method by someone who has not heard of projections.

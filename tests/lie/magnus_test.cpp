@@ -4,6 +4,7 @@
 #include "integrators/lie/group_system.hpp"
 #include "integrators/lie/linear_rotation.hpp"
 #include "integrators/methods/explicit_tableaus.hpp"
+#include "integrators/systems/turning_frame.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -161,6 +162,20 @@ TEST_CASE("a screw is followed exactly on SE(3), by steps of any length", "[lie]
   CHECK(std::abs(y[4] - std::sin(angle) / 2) < 2e-15);
   CHECK(std::abs(y[5] - (1 - std::cos(angle)) / 2) < 2e-15);
   CHECK(std::abs(y[6] - 0.5) < 2e-15);
+}
+
+TEST_CASE("a start beside the group is refused by methods on it, and by no others", "[lie]") {
+  std::vector<double> y = TurningFrame{}.start();
+  y[1] = 1e-4;
+  CHECK_THROWS_WITH(Simulation(initial_state(TurningFrame{}, y), lie(TurningFrame{}, method("magnus_4")), 0.1),
+                    "the matrix Y of system 'turning_frame' is no rotation: |Y^T Y - 1| is 0.0001, but at most 1e-09 "
+                    "is expected of a method on rotations");
+  CHECK_NOTHROW(Simulation(initial_state(TurningFrame{}, y), lie(TurningFrame{}, method("rk4")), 0.1));
+  CHECK_THROWS_WITH(
+      Simulation(initial_state(UsersTop{}, {1.5, 0, 0, 0, 0, 0, 0}), lie(UsersTop{}, method("rkmk_rk4")), 0.1),
+      Catch::Contains("is no rotation: |q|^2 - 1 is 1.25, but at most 1e-09 is expected"));
+  CHECK_THROWS_AS(Simulation(initial_state(Screw{}, {NAN, 0, 0, 0, 0, 0, 0}), lie(Screw{}, method("rkmk_euler")), 0.5),
+                  Error);
 }
 
 TEST_CASE("what a step on a group takes is counted, plain and with brackets reduced", "[lie]") {
