@@ -29,8 +29,8 @@ std::string kept_text(const Scene& scene, const IntegratorClaims& claims) {
   if (!claims.energy_exact) return "";
   if (scene.system) return "keeps E";
   const std::optional<MethodChoice>& own = scene.integrator.classical;
-  const MethodClaims method =
-      own ? make_method<double>(*own->info, own->options)->claims() : MethodClaims{.keeps_angular_momentum = true};
+  const MethodClaims method = own ? make_method<double>(*own->info, own->options)->claims()
+                                  : MethodClaims{.name = "", .keeps_angular_momentum = true};
   std::vector<std::string> kept = {"E"}, lost;
   const auto tell = [&](const char* symbol, bool keeps, bool ForceClaims::*by_forces, bool by_method, bool box_loses) {
     if (keeps) {
