@@ -40,11 +40,12 @@ template <class Real> class HeldEquations final : public Equations<Real> {
       gradients_.resize(static_cast<std::size_t>(group.equations() * group.particles()));
       group.gradients(x, c, c + 1, gradients_.data());
       for (Index e = 0; e < group.equations(); ++e, ++at) {
-        scale[at] = Real(group.scale(c));
+        scale[at] = Real(group.scale(c));  // and what rounding of positions makes of it, far from the origin
         g[count + at] = scale[count + at] = Real(0);
         for (Index k = 0; k < group.particles(); ++k) {
           const Vec3<Real> slope = gradients_[static_cast<std::size_t>(e * group.particles() + k)];
-          const Vec3<Real> v = s.velocities()[group.particle(c, k)];
+          const Vec3<Real> place = s.positions()[group.particle(c, k)], v = s.velocities()[group.particle(c, k)];
+          scale[at] += Real(sqrt(norm2(slope) * norm2(place)));
           g[count + at] += dot(slope, v);
           scale[count + at] += Real(sqrt(norm2(slope) * norm2(v)));
         }
@@ -87,16 +88,21 @@ template <class Real> class HeldEquations final : public Equations<Real> {
       }
     });
   }
-  /// A time in which nothing moves far; 0 where nothing moves.
+  /// A time in which nothing held moves far beside what holds it; 0 where nothing moves.
   Real small_step(const ParticleSystem<Real>& s) const {
-    using std::cbrt, std::max, std::sqrt;
-    Real far(0), fast(0);
-    for (Index i = 0; i < s.size(); ++i) {
-      far = max(far, norm2(Vec3<Real>(s.positions()[i])));
-      fast = max(fast, norm2(Vec3<Real>(s.velocities()[i])));
-    }
+    using std::cbrt, std::max, std::min, std::sqrt;
+    Real least(std::numeric_limits<double>::max()), fast(0);
+    each([&](const ConstraintGroup& group, Index c) {
+      const Vec3<Real> first = s.positions()[group.particle(c, 0)];
+      Real reach2 = group.particles() == 1 ? norm2(first) : Real(0);
+      for (Index k = 0; k < group.particles(); ++k) {
+        reach2 = max(reach2, norm2(Vec3<Real>(s.positions()[group.particle(c, k)] - first)));
+        fast = max(fast, norm2(Vec3<Real>(s.velocities()[group.particle(c, k)])));
+      }
+      if (reach2 > Real(0)) least = min(least, reach2);
+    });
     if (fast == Real(0)) return Real(0);
-    return Real(cbrt(std::numeric_limits<Real>::epsilon())) * Real(sqrt(max(far, Real(1e-300)) / fast));
+    return Real(cbrt(std::numeric_limits<Real>::epsilon())) * Real(sqrt(least / fast));
   }
 
   ConstraintSet set_;

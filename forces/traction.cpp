@@ -7,7 +7,7 @@
 namespace noether {
 
 const std::vector<detail::KnownSurface::Corner>& detail::KnownSurface::of(
-    const std::shared_ptr<const Topology>& topology, const std::string& surface) const {
+    const std::shared_ptr<const Topology>& topology, Index n, const std::string& surface) const {
   if (topology_ != nullptr && topology == topology_ && surface == surface_) return corners_;
   const Mesh* mesh = topology != nullptr ? topology->mesh.get() : nullptr;
   if (mesh == nullptr) {
@@ -15,6 +15,7 @@ const std::vector<detail::KnownSurface::Corner>& detail::KnownSurface::of(
         "force 'traction' has nothing to act on: the particles have no mesh; give a block or a mesh, or take the force "
         "out");
   }
+  mesh->check(n);
   const int wanted = mesh->surface(surface);
   std::map<Index, double> areas;
   for (const BondedTerm<3>& triangle : mesh->triangles) {

@@ -22,8 +22,10 @@ class KnownSurface {
     Index particle;
     double area;  ///< a third of the triangles about it [length^2]
   };
-  /// @throws Error  without a mesh, or without that surface
-  const std::vector<Corner>& of(const std::shared_ptr<const Topology>& topology, const std::string& surface) const;
+  /// @param n  number of particles
+  /// @throws Error  without a mesh, without that surface, or for a mesh of other particles
+  const std::vector<Corner>& of(const std::shared_ptr<const Topology>& topology, Index n,
+                                const std::string& surface) const;
 
  private:
   mutable std::shared_ptr<const Topology> topology_;
@@ -61,11 +63,13 @@ struct Traction {
             .exclusions = false};
   }
   /// @throws Error  without a mesh, or without this surface
-  template <class Real> void check(const ParticleSystem<Real>& s) const { known.of(s.shared_topology(), surface); }
+  template <class Real> void check(const ParticleSystem<Real>& s) const {
+    known.of(s.shared_topology(), s.size(), surface);
+  }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     const Vec3<Real> t = {Real(traction[0]), Real(traction[1]), Real(traction[2])};
-    for (const auto& [i, area] : known.of(s.shared_topology(), surface)) {
+    for (const auto& [i, area] : known.of(s.shared_topology(), s.size(), surface)) {
       const Vec3<Real> force = Real(area) * t;
       out.force(i, force);
       if (out.wants_energy() && s.masses()[i] != Real(0)) out.energy(-dot(force, s.positions()[i]));

@@ -82,6 +82,7 @@ template <class Real> void Manifold<Real>::bind(const ParticleSystem<Real>& s, c
   }
   for (const auto& one : own_) {
     one->bind(s);
+    if (s.box().is_periodic()) check_wraps(s, *one);
     size_ += one->size();
   }
   if (options_.how == Projection::hamiltonian && size_ == 1) {
@@ -176,6 +177,17 @@ void Manifold<Real>::check_particles(const ParticleSystem<Real>& s, const Integr
         {.key = "how"});
   }
   check_hamiltonian();
+}
+
+/// What depends on where particles are jumps where they cross a periodic box.
+template <class Real> void Manifold<Real>::check_wraps(const ParticleSystem<Real>& s, Equations<Real>& own) const {
+  Matrix<Real> G = Matrix<Real>::Zero(6 * s.size(), own.size());
+  own.gradients(s, G, 0);
+  if ((G.topRows(3 * s.size()).array() == Real(0)).all()) return;
+  throw SchemeMismatch(own.name() +
+                           " depends on positions, which jump where particles cross the periodic box; project "
+                           "onto what depends on velocities alone, or take the box out",
+                       {.key = "onto"});
 }
 
 /// Moving along the flow of H, P or L does not change them all: {H, H} = {P, P} = 0, and {L_x, L_y} = L_z.

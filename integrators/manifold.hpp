@@ -69,6 +69,7 @@ template <class Real> class Manifold {
   void check(const ParticleSystem<Real>& s, const IntegratorClaims& claims) const;
   void check_particles(const ParticleSystem<Real>& s, const IntegratorClaims& claims) const;
   void check_hamiltonian() const;
+  void check_wraps(const ParticleSystem<Real>& s, Equations<Real>& own) const;
   void energy_gradient(AnyIntegrator<Real>& of, const ParticleSystem<Real>& s, Matrix<Real>& G, Index column);
   void weigh(const Matrix<Real>& G, Matrix<Real>& D) const;
 

@@ -77,6 +77,7 @@ template <OwnInvariant G, class Real> class OwnEquations final : public Equation
       throw Error("an invariant of " + std::string(of_particles ? "particles" : "variables") +
                   " cannot be projected onto in a run of " + (of_particles ? "variables" : "particles"));
     }
+    y_.resize(0);
     masses_.clear();
     for (Index i = 0; i < s.size(); ++i) masses_.push_back(static_cast<double>(s.masses()[i]));
   }
@@ -84,21 +85,29 @@ template <OwnInvariant G, class Real> class OwnEquations final : public Equation
 
   void values(const ParticleSystem<Real>& s, Real* g, Real* scale) override {
     using std::abs;
-    gather(s);
+    differentiate(s);
     const Array<Real> now = evaluate<Real>(y_);
-    Matrix<Real> G_now = Matrix<Real>::Zero(y_.size(), size());
-    gradients(s, G_now, 0);
     for (Index k = 0; k < size(); ++k) {
       g[k] = now[static_cast<std::size_t>(k)];
       // What rounding of y makes of it.
       scale[k] = Real(abs(g[k]));
-      for (Index i = 0; i < y_.size(); ++i) scale[k] += Real(abs(G_now(i, k) * y_[i]));
+      for (Index i = 0; i < y_.size(); ++i) scale[k] += Real(abs(G_(i, k) * y_[i]));
     }
   }
   void gradients(const ParticleSystem<Real>& s, Matrix<Real>& G_out, Index first) override {
+    differentiate(s);
+    G_out.middleCols(first, size()) = G_;
+  }
+
+ private:
+  /// The gradients at y, in G_; those of the last y are known.
+  void differentiate(const ParticleSystem<Real>& s) {
     constexpr std::size_t width = 4;
     using D = Dual<Real, width>;
+    known_ = y_;
     gather(s);
+    if (G_.cols() == size() && known_.size() == y_.size() && known_ == y_) return;
+    G_.resize(y_.size(), size());
     Vector<D> point(y_.size());
     for (Index i = 0; i < y_.size(); ++i) point[i] = D(y_[i]);
     for (Index begin = 0; begin < y_.size(); begin += static_cast<Index>(width)) {
@@ -107,13 +116,12 @@ template <OwnInvariant G, class Real> class OwnEquations final : public Equation
       const Array<D> g = evaluate<D>(point);
       for (Index k = 0; k < size(); ++k) {
         for (Index i = begin; i < end; ++i)
-          G_out(i, first + k) = g[static_cast<std::size_t>(k)].slope[static_cast<std::size_t>(i - begin)];
+          G_(i, k) = g[static_cast<std::size_t>(k)].slope[static_cast<std::size_t>(i - begin)];
       }
       for (Index i = begin; i < end; ++i) point[i] = D(y_[i]);
     }
   }
 
- private:
   static constexpr bool of_particles = InvariantOfParticles<G, double>;
 
   template <class T> using Argument = std::conditional_t<of_particles, ParticleState<T>, Vector<T>>;
@@ -141,7 +149,8 @@ template <OwnInvariant G, class Real> class OwnEquations final : public Equation
 
   G g_;
   std::vector<double> masses_;
-  Vector<Real> y_;
+  Vector<Real> y_, known_;
+  Matrix<Real> G_;  ///< the gradients at y
 };
 
 }  // namespace noether

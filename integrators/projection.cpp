@@ -25,8 +25,7 @@ void ProjectionOptions::check_directions() const {
     refuse_field("how", "oblique", "has no direction; give moves = \"velocities\" or \"positions\", or a direction");
   }
   if (moves.has_value() && !direction.empty()) {
-    refuse_field("moves", std::string(EnumNames<Moves>::values[static_cast<std::size_t>(*moves)].second),
-                 "and a direction are both given; give one of them");
+    refuse_field("moves", choice_name(*moves), "and a direction are both given; give one of them");
   }
   if (how != Projection::oblique && given) {
     refuse_field(moves ? "moves" : "direction", "(given)", "is for how = \"oblique\"; take it out, or project so");

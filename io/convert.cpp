@@ -1,5 +1,6 @@
 // Trajectories as text, extended XYZ and CSV, and frames as bodies of new scenes.
 #include "engine/bodies.hpp"
+#include "io/files.hpp"
 #include "io/frame_particles.hpp"
 #include "io/frame_sites.hpp"
 #include "io/inspect.hpp"
@@ -167,19 +168,6 @@ std::string csv_head(const Frames& shared) {
     for (Index k = 0; k < column.first; ++k) head += fmt::format(",{}[{}]{}", name, k, unit(column.second));
   }
   return head.append("\n");
-}
-
-void write_text_file(const std::filesystem::path& out, const std::function<void(std::ofstream&)>& write) {
-  std::ofstream target(out, std::ios::binary);
-  const auto written = [&] {
-    if (!target)
-      throw FileError("cannot be written; check that the folder exists and the disk is not full",
-                      {.file = out.string()});
-  };
-  written();
-  write(target);
-  target.close();
-  written();
 }
 
 /// What of these particles a table of bodies has no column for; empty: nothing.

@@ -83,6 +83,19 @@ void write_and_sync(const std::filesystem::path& file, std::string_view bytes) {
   if (::fsync(target) != 0) give_up(errno);
 }
 
+void write_text_file(const std::filesystem::path& file, const std::function<void(std::ofstream&)>& write) {
+  std::ofstream target(file, std::ios::binary);
+  const auto written = [&] {
+    if (!target)
+      throw FileError("cannot be written; check that the folder exists and the disk is not full",
+                      {.file = file.string()});
+  };
+  written();
+  write(target);
+  target.close();
+  written();
+}
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

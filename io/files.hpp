@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -15,6 +17,10 @@ std::string read_bytes(const std::filesystem::path& file, std::size_t most = std
 
 /// Writes a file and waits until it is on disk. @throws FileError; what was written of it is removed
 void write_and_sync(const std::filesystem::path& file, std::string_view bytes);
+
+/// Writes a text through a stream, for people and other programs: it is not waited for until it is on disk.
+/// @throws FileError
+void write_text_file(const std::filesystem::path& file, const std::function<void(std::ofstream&)>& write);
 
 /// Makes a folder, and those it lies in, where they are not there yet. @throws FileError
 void make_folder(const std::filesystem::path& folder);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <utility>
@@ -90,9 +91,9 @@ class GmshReader {
     if (word >= words_.size()) text_.fail(line_, fmt::format("the line ends where {} is expected", what));
     return whole_number_in(text_, line_, words_[word], what, least, most);
   }
-  /// A tag of an entity or a group, which may be negative.
+  /// A tag of an entity or a group. A minus says only that a surface is turned over.
   std::int64_t tag(std::size_t word, std::string_view what) const {
-    return whole(word, what, -most_particles, most_particles);
+    return std::abs(whole(word, what, -most_particles, most_particles));
   }
 
   // ---- sections -------------------------------------------------------------------------------------------------
@@ -129,8 +130,13 @@ class GmshReader {
     }
   }
 
-  /// The first group of each entity.
+  /// The groups of each entity.
   void read_entities() {
+    if (has("PartitionedEntities")) {
+      text_.fail(sections_.at("PartitionedEntities"),
+                 "the mesh is divided into partitions; a whole one is expected: give Mesh.PartitionCreateTopology = 0 "
+                 "to Gmsh, or do not partition it");
+    }
     begin("Entities");
     next("the numbers of entities", 4);
     std::array<std::int64_t, 4> counts{};
@@ -139,8 +145,15 @@ class GmshReader {
       const std::size_t bounds = d == 0 ? 3 : 6;
       for (std::int64_t k = 0; k < counts[d]; ++k) {
         next("an entity", bounds + 2);
-        const std::int64_t groups = whole(bounds + 1, "a number of groups");
-        if (groups > 0) group_of_[{static_cast<std::int64_t>(d), tag(0, "an entity")}] = tag(bounds + 2, "a group");
+        const std::int64_t count_of_groups = whole(bounds + 1, "a number of groups");
+        std::vector<std::int64_t>& groups = groups_of_[{static_cast<std::int64_t>(d), tag(0, "an entity")}];
+        for (std::int64_t g = 0; g < count_of_groups; ++g) {
+          groups.push_back(tag(bounds + 2 + static_cast<std::size_t>(g), "a group"));
+        }
+        if (d == 3 && groups.size() > 1) {
+          text_.fail(line_, fmt::format("volume {} is in the physical volumes {}; put it into one", words_[0],
+                                        fmt::join(groups, " and ")));
+        }
       }
     }
   }
@@ -190,7 +203,7 @@ class GmshReader {
       next("an element", 4);
       const std::int64_t kind = whole(1, "the kind of an element", 1);
       const auto tags = static_cast<std::size_t>(whole(2, "the number of tags", 0, 1000));
-      add_element(kind, tags > 0 ? tag(3, "a group") : 0, 3 + tags);
+      add_element(kind, {tags > 0 ? tag(3, "a group") : 0}, 3 + tags);
     }
   }
   void read_elements_by_entity() {
@@ -201,19 +214,24 @@ class GmshReader {
       next("a block of elements", 4);
       const std::int64_t dimension = whole(0, "a dimension", 0, 3), entity = tag(1, "an entity");
       const std::int64_t kind = whole(2, "the kind of an element", 1), count = whole(3, "the number of elements");
-      const auto group = group_of_.find({dimension, entity});
+      const auto found = groups_of_.find({dimension, entity});
+      const bool grouped = found != groups_of_.end() && !found->second.empty();
+      const std::vector<std::int64_t> groups = grouped ? found->second : std::vector<std::int64_t>{0};
       for (std::int64_t k = 0; k < count; ++k) {
         next("an element", 2);
-        add_element(kind, group == group_of_.end() ? 0 : group->second, 1);
+        add_element(kind, groups, 1);
       }
     }
   }
-  void add_element(std::int64_t kind, std::int64_t group, std::size_t first_word) {
+  /// A triangle is there once for each of its groups, a tetrahedron has one.
+  void add_element(std::int64_t kind, const std::vector<std::int64_t>& groups, std::size_t first_word) {
     if (kind == line_element || kind == point_element) return;
     if (kind == tetrahedron_element) {
-      tetrahedra_.push_back({nodes<4>(first_word), group_number(regions_, group), line_});
+      tetrahedra_.push_back({nodes<4>(first_word), group_number(regions_, groups.front()), line_});
     } else if (kind == triangle_element) {
-      triangles_.push_back({nodes<3>(first_word), group_number(surfaces_, group), line_});
+      for (const std::int64_t group : groups) {
+        triangles_.push_back({nodes<3>(first_word), group_number(surfaces_, group), line_});
+      }
     } else {
       text_.fail(line_, fmt::format("this element is {}; tetrahedra of first order are expected, with triangles",
                                     kind_of_element(kind)));
@@ -355,7 +373,7 @@ class GmshReader {
   std::vector<std::string_view> words_;
   using Group = std::pair<std::int64_t, std::int64_t>;  ///< dimension and tag
   std::map<Group, std::string> names_;
-  std::map<Group, std::int64_t> group_of_;  ///< of each entity
+  std::map<Group, std::vector<std::int64_t>> groups_of_;  ///< of each entity
   std::map<std::int64_t, Vec3<double>> places_;
   std::vector<std::int64_t> regions_, surfaces_;  ///< tags of groups
   std::vector<Element<4>> tetrahedra_;
@@ -368,8 +386,8 @@ double length_of(const StructureOptions& options) {
   try {
     return parse_quantity("1 " + options.file_units, dimensions::length, *options.units);
   } catch (const Error&) {
-    throw Error(fmt::format("file_units = \"{}\" is not a unit of length{}, as a mesh needs one",
-                            options.file_units, options.units->is_reduced() ? " of reduced units" : ""),
+    throw Error(fmt::format("file_units = \"{}\" is not a unit of length{}, as a mesh needs one", options.file_units,
+                            options.units->is_reduced() ? " of reduced units" : ""),
                 {.key = "file_units", .value = options.file_units});
   }
 }

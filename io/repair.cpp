@@ -46,7 +46,9 @@ Plan plan(const fs::path& path, std::uint64_t size) {
   const TrajectoryReader reader(path);
   const Hdf5File& file = reader.file();
   std::vector<std::string> complete;
-  for (const std::string& group : constant_groups()) {
+  std::vector<std::string> groups = constant_groups();
+  groups.emplace_back(vmd_structure_path);
+  for (const std::string& group : groups) {
     for (const std::string& one : file.children(group)) {
       const std::string path_of_one = group + "/" + one;
       if (!file.is_group(path_of_one) && !file.open(path_of_one).grows()) complete.push_back(path_of_one);

@@ -103,8 +103,8 @@ class TopologyWriter {
       from.push_back(row[static_cast<std::size_t>(i)]);
       to.push_back(row[static_cast<std::size_t>(j)]);
     }
-    file_.write("/parameters/vmd_structure/bond_from", from, {static_cast<Index>(from.size())});
-    file_.write("/parameters/vmd_structure/bond_to", to, {static_cast<Index>(to.size())});
+    file_.write(vmd_structure_path + "/bond_from", from, {static_cast<Index>(from.size())});
+    file_.write(vmd_structure_path + "/bond_to", to, {static_cast<Index>(to.size())});
   }
 
   void integers(const std::string& name, const std::vector<std::int64_t>& values, Index width) const {

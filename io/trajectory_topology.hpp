@@ -34,6 +34,7 @@ namespace noether::io {
 
 inline const std::string topology_path = "/noether/topology";
 inline const std::string connectivity_path = "/connectivity";
+inline const std::string vmd_structure_path = "/parameters/vmd_structure";
 
 /// Writes what there is of it. @param order  indices of the particles in the order of their ids
 void write_topology(const Hdf5File& file, const ParticleSystem<double>& state, const std::vector<Index>& order);

@@ -1,8 +1,8 @@
 #include "io/vtu.hpp"
 
 #include "engine/mesh.hpp"
+#include "io/files.hpp"
 #include "io/trajectory_topology.hpp"
-#include "numbers/error.hpp"
 
 #include <fmt/format.h>
 
@@ -97,16 +97,6 @@ class VtuText {
   fmt::memory_buffer text_;
 };
 
-void write_grid(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream target(file, std::ios::binary);
-  target.write(text.data(), static_cast<std::streamsize>(text.size()));
-  target.close();
-  if (!target) {
-    throw FileError("cannot be written; check that the folder exists and the disk is not full",
-                    {.file = file.string()});
-  }
-}
-
 }  // namespace
 
 Index write_vtu(const TrajectoryReader& reader, const std::filesystem::path& out) {
@@ -115,6 +105,9 @@ Index write_vtu(const TrajectoryReader& reader, const std::filesystem::path& out
   for (Index k = 0; k < rows; ++k) in_rows[static_cast<std::size_t>(k)] = k;
   const std::shared_ptr<const Topology> topology = read_topology(reader.file(), reader.shared().ids, in_rows);
   VtuText text(reader.shared(), topology != nullptr ? topology->mesh.get() : nullptr);
+  const auto write_grid = [](const std::filesystem::path& file, const std::string& grid) {
+    write_text_file(file, [&](std::ofstream& target) { target << grid; });
+  };
   const Index frames = reader.frames();
   if (frames == 1) {
     write_grid(out, text.of(reader.frame(0)));

@@ -157,6 +157,10 @@ TEST_CASE("an element that is turned inside out is told by its number, flat ones
   flat.mesh = mesh;
   s.set_topology(std::make_shared<const Topology>(flat));
   CHECK_THROWS_WITH(check_force(soft, s), Catch::Contains("element 0 of the mesh is flat"));
+  mesh->rest[0] = {0, 0, 0};
+  mesh->triangles[3].particles[1] = 8;
+  CHECK_THROWS_WITH(check_force(Traction{.surface = "z_high", .traction = {0, 0, 2}}, s),
+                    Catch::Contains("triangle 3 of the mesh names particle 8, but there are 8"));
 }
 
 TEST_CASE("forces in lanes have the bits of elements one by one, with and without energy", "[hyperelastic]") {

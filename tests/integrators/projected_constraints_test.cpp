@@ -68,6 +68,25 @@ TEST_CASE("constraints and their rates are a pair that flows of their own can be
   }
 }
 
+TEST_CASE("constraints are found again far from the origin, where positions are rounded more",
+          "[integrators][projected]") {
+  // Rods of 1 and 1.5 at a distance of 1e5: rounding of positions makes 1e-11 of their lengths.
+  ParticleSystem<double> s;
+  s.add("a", 1, {1e5, 0, 0}, {0, 1, 0});
+  s.add("b", 2, {1e5 + 1, 0, 0}, {0, 0, 1});
+  s.add("c", 3, {1e5 + 1, 1.5, 0}, {-1, 0, 0});
+  ConstraintSet rods;
+  rods.add(s, Distance{1}, {0, 1}).add(s, Distance{1.5}, {1, 2});
+  rods = rods.solved_by({.solver = ConstraintMethod::rattle, .tolerance = 1e-5});
+  const auto bare = compose(test::kinetic_potential_over(test::field_of(test::weight), rods), schemes::verlet);
+  Simulation<double> held(s, projected(bare, {.onto = {Invariant::constraints}}, rods), 0.01);
+  const Outcome outcome = held.run(100);
+  INFO(outcome.message);
+  REQUIRE(outcome.ok());
+  CHECK(rods.worst(held.particles()).residual < 1e-10);
+  CHECK(held.evaluations().projection.mean() < 4);
+}
+
 TEST_CASE("particles that constraints hold are not moved off them", "[integrators][projected]") {
   const test::Mechanism pendulum = test::double_pendulum();
   const auto bare = compose(test::hamiltonian_of(pendulum), schemes::verlet);

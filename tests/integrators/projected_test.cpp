@@ -384,6 +384,17 @@ TEST_CASE("a tolerance is what may be left, and not 64 of it", "[integrators][pr
   }
 }
 
+TEST_CASE("an invariant of positions is refused in a periodic box, where they jump", "[integrators][projected]") {
+  ParticleSystem<double> s = test::pairs::kepler_pair();
+  s.set_box(Box::periodic({10, 10, 10}));
+  const auto bare = compose(test::kinetic_potential(UniformField{}), schemes::verlet);
+  const ProjectionOptions kicks{.how = Projection::oblique, .moves = Moves::velocities};
+  CHECK_THROWS_WITH(Simulation<double>(s, projected(bare, kicks, LaplaceY{}), 0.1),
+                    Contains("depends on positions, which jump where particles cross the periodic box"));
+  const auto speeds = [](const auto& state) { return dot(state.v(0), state.v(0)); };
+  CHECK_NOTHROW(Simulation<double>(s, projected(bare, kicks, speeds), 0.1));
+}
+
 namespace {
 
 /// A number that grows, and its logarithm, which is not conserved: there is nothing to be reached beyond e.

@@ -14,8 +14,9 @@ namespace {
 const std::string seeds = NOETHER_SOURCE_DIR "/tests/fuzz/seeds/structure/";
 const io::StructureOptions weighed = {.units = &unit_system("reduced"), .densities = {{"", 6}, {"soft rubber", 12}}};
 
-std::string mesh_refusal(const std::string& before, const std::string& after, io::StructureOptions options = weighed) {
-  std::string content = test::read_text(seeds + "wedge.msh");
+std::string mesh_refusal(const std::string& before, const std::string& after, io::StructureOptions options = weighed,
+                         const std::string& seed = "wedge.msh") {
+  std::string content = test::read_text(seeds + seed);
   const std::size_t at = content.find(before);
   REQUIRE(at != std::string::npos);
   content.replace(at, before.size(), after);
@@ -87,4 +88,27 @@ TEST_CASE("meshes that cannot be followed are refused where they are wrong", "[s
         "no density is given for the region 'soft rubber' of the mesh");
   CHECK(mesh_refusal("2.2", "2.2", {.units = &unit_system("reduced"), .densities = {{"brass", 7}}}) ==
         "density is given for 'brass', but the regions of the mesh are steel, soft rubber");
+}
+
+TEST_CASE("a surface is in each of its physical groups, turned over or not, and a volume in one", "[structure][mesh]") {
+  std::string content = test::read_text(seeds + "wedge41.msh");
+  const auto replace = [&](const std::string& before, const std::string& after) {
+    const std::size_t at = content.find(before);
+    REQUIRE(at != std::string::npos);
+    content.replace(at, before.size(), after);
+  };
+  replace("5 0 0 0 1 1 1 1 7 0", "5 0 0 0 1 1 1 2 -7 8 0");
+  replace("3\n2 7 \"held\"", "4\n2 7 \"held\"\n2 8 \"painted\"");
+  const test::ScratchFolder folder;
+  test::write_text(folder / "m.msh", content);
+  const Mesh mesh = *io::read_structure(folder / "m.msh", weighed).topology()->mesh;
+  CHECK(mesh.surfaces == std::vector<std::string>{"held", "painted"});
+  CHECK(mesh.particles_of(mesh.surface("held")) == mesh.particles_of(mesh.surface("painted")));
+  CHECK(mesh.particles_of(mesh.surface("held")).size() == 4);
+
+  CHECK(mesh_refusal("1 0 0 0 1 1 1 1 1 0", "1 0 0 0 1 1 1 2 1 2 0", weighed, "wedge41.msh") ==
+        "m.msh:14: volume 1 is in the physical volumes 1 and 2; put it into one");
+  CHECK(mesh_refusal("$EndEntities\n", "$EndEntities\n$PartitionedEntities\n0\n$EndPartitionedEntities\n", weighed,
+                     "wedge41.msh")
+            .starts_with("m.msh:17: the mesh is divided into partitions"));
 }
