@@ -167,13 +167,14 @@ TEST_CASE("a screw is followed exactly on SE(3), by steps of any length", "[lie]
 TEST_CASE("a start beside the group is refused by methods on it, and by no others", "[lie]") {
   std::vector<double> y = TurningFrame{}.start();
   y[1] = 1e-4;
-  CHECK_THROWS_WITH(Simulation(initial_state(TurningFrame{}, y), lie(TurningFrame{}, method("magnus_4")), 0.1),
-                    "the matrix Y of system 'turning_frame' is no rotation: |Y^T Y - 1| is 0.0001, but at most 1e-09 "
-                    "is expected of a method on rotations");
+  CHECK_THROWS_WITH(
+      Simulation(initial_state(TurningFrame{}, y), lie(TurningFrame{}, method("magnus_4")), 0.1),
+      "the matrix Y of system 'turning_frame' is not a rotation: |Y^T Y - 1| is 0.0001, but at most 1e-09 "
+      "is expected of a method on rotations");
   CHECK_NOTHROW(Simulation(initial_state(TurningFrame{}, y), lie(TurningFrame{}, method("rk4")), 0.1));
   CHECK_THROWS_WITH(
       Simulation(initial_state(UsersTop{}, {1.5, 0, 0, 0, 0, 0, 0}), lie(UsersTop{}, method("rkmk_rk4")), 0.1),
-      Catch::Contains("is no rotation: |q|^2 - 1 is 1.25, but at most 1e-09 is expected"));
+      Catch::Contains("is not a rotation: |q|^2 - 1 is 1.25, but at most 1e-09 is expected"));
   CHECK_THROWS_AS(Simulation(initial_state(Screw{}, {NAN, 0, 0, 0, 0, 0, 0}), lie(Screw{}, method("rkmk_euler")), 0.5),
                   Error);
 }
