@@ -129,10 +129,6 @@ struct Collision {
   StopRule rule() const { return closer_than(distance); }
 };
 
-}  // namespace
-
-namespace {
-
 void add_systems(Parts& parts) {
   parts.add_system<Robertson>();
   parts.add_system<RcLadder>();

@@ -62,8 +62,8 @@ struct Kerr {
     const double sine = std::sin(theta), cosine = std::cos(theta), D = r * r - 2 * r + a * a,
                  S = r * r + a * a * cosine * cosine, L = angular_momentum, ring = r * r + a * a;
     const double square = a * a * sine * sine - ring * ring / D, linear = a * L - ring * a * L / D,
-                 rest = D * p_r * p_r + p_theta * p_theta + L * L / (sine * sine) - a * a * L * L / D + S;
-    return {0, r, theta, 0, (-linear + std::sqrt(linear * linear - square * rest)) / square, p_r, p_theta, L};
+                 constant = D * p_r * p_r + p_theta * p_theta + L * L / (sine * sine) - a * a * L * L / D + S;
+    return {0, r, theta, 0, (-linear + std::sqrt(linear * linear - square * constant)) / square, p_r, p_theta, L};
   }
   std::vector<std::string> names() const { return {"t", "r", "theta", "phi", "p_t", "p_r", "p_theta", "p_phi"}; }
 
