@@ -18,8 +18,8 @@ namespace {
 
 /// How far apart the copies may be, of the largest that the state has been.
 constexpr double farthest_copies = 0.1;
-/// Omega beside the fastest rate of the start.
-constexpr double bond_over_rate = 8;
+/// Omega beside the strongest coupling of the start: of canonical systems, and of particles.
+constexpr double bond_over_curvature = 2, bond_over_rate = 8;
 
 std::vector<std::string> compositions(int order) {
   std::vector<std::string> names;
@@ -72,10 +72,14 @@ template <class Real> Real largest(const Vector<Real>& y, int half) {
   return n == 0 ? Real(0) : Real(y.segment(half * n, n).cwiseAbs().maxCoeff());
 }
 
-/// The fastest rate of the motion about y, the root of the largest eigenvalue of J^2, J = df/dy; 0 where there is none.
+/// What the bond of the copies is measured by. Of a canonical system the largest second derivative of H about y, in the
+/// units of q and p as they are; of particles the fastest rate, the root of the largest eigenvalue of J^2, J = df/dy.
+/// 0 where there is none.
 /// @cost 16 products J v, each of them two evaluations where J is not known
-template <class Real> Real fastest_rate(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
+template <class Real> Real strongest_coupling(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
   using std::cbrt, std::max, std::min, std::sqrt;
+  const Index n = y.size() / 2;
+  const bool canonical = f.claims().canonical;
   const Real unset(std::numeric_limits<double>::max()), size[2] = {largest(y, 0), largest(y, 1)};
   Vector<Real> v, w, up, down, moved;
   const auto product = [&](const Vector<Real>& along, Vector<Real>& out) {
@@ -92,16 +96,23 @@ template <class Real> Real fastest_rate(VectorField<Real>& f, const Real& t, con
     f.rate(t, moved, down);
     out = (up - down) / (step + step);
   };
+  const auto apply = [&](const Vector<Real>& along) {
+    product(along, w);
+    if (!canonical) return;
+    moved = w;  // (dH/dp, -dH/dq) becomes the gradient
+    w.head(n) = -moved.tail(n);
+    w.tail(n) = moved.head(n);
+  };
   f.rate(t, y, v);
   if (largest(v, 0) == Real(0) || largest(v, 1) == Real(0)) v.setOnes(y.size());
   Real square(0);
   for (int k = 0; k < 8; ++k) {
-    product(v, w);
-    product(w, up);
-    w = up;
+    apply(v);
+    const Vector<Real> once = w;
+    apply(once);
     square = Real(0);
     for (const int half : {0, 1}) {
-      const Real before = largest(v, half);
+      const Real before = canonical ? Real(v.cwiseAbs().maxCoeff()) : largest(v, half);
       if (before > Real(0)) square = max(square, Real(largest(w, half) / before));
     }
     if (!(square > Real(0)) || !std::isfinite(static_cast<double>(square))) return Real(0);
@@ -188,7 +199,8 @@ template <class Real>
 void TaoMethod<Real>::begin(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
   begun_ = true;
   largest_ = {Real(0), Real(0)};
-  omega_ = given_omega_ ? Real(*given_omega_) : Real(bond_over_rate) * fastest_rate(f, t, y);
+  const double over = second_order_ ? bond_over_rate : bond_over_curvature;
+  omega_ = given_omega_ ? Real(*given_omega_) : Real(over) * strongest_coupling(f, t, y);
   if (!(omega_ > Real(0))) omega_ = Real(1 / std::abs(h));
 }
 

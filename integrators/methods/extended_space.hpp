@@ -63,8 +63,8 @@ struct TaoOptions {
             "composition", "1",
             "symmetric composition of the method's order; default: verlet, yoshida_4, kahan_li_6_s9, kahan_li_8_s17"),
         field<&TaoOptions::omega>("omega", "1/time",
-                                  "the copies turn about each other at twice this rate; default: 8 times the fastest "
-                                  "rate of the start"));
+                                  "the copies turn about each other at twice this rate; default: twice the largest "
+                                  "second derivative of H at the start, of particles 8 times the fastest rate"));
   }
   void check() const;
 };
@@ -74,8 +74,9 @@ struct TaoOptions {
 ///     C = omega (|q - x|^2 + |p - y|^2)/2,      of particles m (omega^2 |q - x|^2 + |v - w|^2)/2
 ///
 /// keeps them together. The basic word is A B C B A over half steps of A and B. It is symplectic in twice the
-/// dimensions, and of the order of its composition; what users see is (q, p). Rates have to be small beside omega, or
-/// the copies part: where they are a tenth of the state apart the run ends by name.
+/// dimensions, and of the order of its composition; what users see is (q, p). Second
+/// derivatives of H have to be small beside omega, or the copies part: where they are a tenth of the state apart the
+/// run ends by name.
 /// @cost 3 s + 1 evaluations for a composition of s sub-steps
 /// @source Tao2016
 template <class Real> class TaoMethod final : public Method<Real> {
