@@ -5,6 +5,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/first_order_system.hpp"
+#include "integrators/hamiltonian_system.hpp"
 #include "integrators/variational/lagrangian_system.hpp"
 #include "study/multistep_roots.hpp"
 
@@ -51,6 +52,18 @@ struct ActionMode {
   template <class Real>
   void force(const Real& /*t*/, const Vector<Real>& /*q*/, const Vector<Real>& v, Vector<Real>& f) const {
     f[0] = Real(2 * lambda.real()) * v[0];
+  }
+};
+
+/// The same as a canonical system, for methods over an energy H(q, p): H = omega (q^2 + p^2)/2. Only what oscillates
+/// without growing has one.
+struct CanonicalMode {
+  double omega;
+
+  static constexpr auto describe() { return part<CanonicalMode>("canonical_mode", "one mode of a Hamiltonian system"); }
+  Index size() const { return 1; }
+  template <class Real> Real value(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& p) const {
+    return Real(omega / 2) * (q[0] * q[0] + p[0] * p[0]);
   }
 };
 
@@ -107,6 +120,20 @@ bool is_over_action(const MethodChoice& choice) {
   return make_method<double>(*choice.info, choice.options)->claims().second_order_only;
 }
 
+/// Whether a method serves systems by their energy alone, not by any rates.
+bool is_over_energy(const MethodChoice& choice) {
+  const auto method = make_method<double>(*choice.info, choice.options);
+  if (method->claims().second_order_only) return false;
+  SystemMotion<LinearMode, double> rates(LinearMode{{0, 1}});
+  rates.bind(initial_state(LinearMode{{0, 1}}, {1, 0}));
+  try {
+    method->bind(rates);
+  } catch (const SchemeMismatch&) {
+    return true;
+  }
+  return method->claims().conservative_only;
+}
+
 /// Whether theory has a mode of `ActionMode` for a scene and a method over a Lagrangian. A real rate is one of damping;
 /// without damping it is one of a saddle, which the solution itself leaves. A discrete Lagrangian of a user knows
 /// nothing of modes.
@@ -125,6 +152,10 @@ StepMatrix classical_step(const MethodChoice& choice, const Mode& mode) {
     const ActionMode system{*mode.lambda / scale};
     field = std::make_unique<LagrangianMotion<ActionMode, double>>(system);
     start = initial_state(system, std::vector<double>{1, 0});
+  } else if (mode.lambda && is_over_energy(choice)) {
+    const CanonicalMode system{std::abs(mode.lambda->imag()) / scale};
+    field = std::make_unique<CanonicalMotion<CanonicalMode, double>>(system);
+    start = initial_state(system, {1, 0});
   } else if (mode.lambda) {
     const LinearMode system{*mode.lambda / scale};
     field = std::make_unique<SystemMotion<LinearMode, double>>(system);
@@ -281,6 +312,8 @@ std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, 
     const MethodChoice& choice = *made.integrator.classical;
     if (remembers(*choice.info) || choice.info->gravity_only) return {};
     if (mode.lambda && is_over_action(choice) && !has_action_mode(made, choice, *mode.lambda)) return {};
+    const bool grows = mode.lambda && std::abs(mode.lambda->real()) > 1e-6 * std::abs(mode.lambda->imag());
+    if (grows && is_over_energy(choice)) return {};
     return classical_step(choice, mode);
   }
   HamiltonianClaims claims{.alphabet = "AB"};

@@ -192,6 +192,27 @@ TEST_CASE("a real rate of a Lagrangian system is one of critical damping, or of 
   CHECK(std::abs(theory("variational_trapezoidal", "0", {0, 3}).limit.value() - 2) < 1e-4);
 }
 
+TEST_CASE("methods over an energy have the theory of their own mode", "[stability]") {
+  const auto scene_by = [](const std::string& method) {
+    return read_scene(
+        "units = 'reduced'\n[system]\ntype = 'nonseparable_oscillator'\nposition = 1e-4\n[integrator]\n"
+        "method = '" +
+            method + "'\nstep = 0.1\nsteps = 100\n",
+        "oscillator.toml");
+  };
+  const auto theory = [&](const std::string& method, std::complex<double> lambda) {
+    const Scene scene = scene_by(method);
+    return linear_theory(scene, fixed_candidate(scene, method), {.omega = 0, .rate = 0, .lambda = lambda});
+  };
+  for (const char* method : {"gonzalez", "avf", "hbvm_4_2", "semiexplicit_2"}) {
+    CAPTURE(method);
+    CHECK(theory(method, {0, 3}).known);
+    CHECK_FALSE(theory(method, {0, 3}).limit);
+  }
+  CHECK_FALSE(theory("semiexplicit_2", {0.5, 3}).known);
+  CHECK_FALSE(theory("tao_2", {0, 3}).known);
+}
+
 TEST_CASE("measured limits are within 1e-3 of the tabulated ones", "[stability][nightly]") {
   const Scene scene = ball();
   for (const char* name : {"verlet", "yoshida_4", "rk4", "dormand_prince_5", "adams_bashforth_3"}) {
