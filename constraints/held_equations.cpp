@@ -33,12 +33,18 @@ template <class Real> class HeldEquations final : public Equations<Real> {
   void values(const ParticleSystem<Real>& s, Real* g, Real* scale) override {
     using std::sqrt;
     const Index count = set_.equations();
-    const ConstraintPositions<Real> x(s.positions());
+    const ConstraintPositions<Real> x(s.positions()), moved(moved_);
+    const Real step = small_step(s);
     Index at = 0;
     each([&](const ConstraintGroup& group, Index c) {
       group.values(x, c, c + 1, g + at);
       gradients_.resize(static_cast<std::size_t>(group.equations() * group.particles()));
       group.gradients(x, c, c + 1, gradients_.data());
+      turned_ = gradients_;
+      if (step > Real(0)) {
+        for (Index k = 0; k < group.particles(); ++k) move(s, group.particle(c, k), step);
+        group.gradients(moved, c, c + 1, turned_.data());
+      }
       for (Index e = 0; e < group.equations(); ++e, ++at) {
         scale[at] = Real(group.scale(c));  // and what rounding of positions makes of it, far from the origin
         g[count + at] = scale[count + at] = Real(0);
@@ -46,6 +52,10 @@ template <class Real> class HeldEquations final : public Equations<Real> {
           const Vec3<Real> slope = gradients_[static_cast<std::size_t>(e * group.particles() + k)];
           const Vec3<Real> place = s.positions()[group.particle(c, k)], v = s.velocities()[group.particle(c, k)];
           scale[at] += Real(sqrt(norm2(slope) * norm2(place)));
+          if (step > Real(0)) {  // dg/dt changes with x by g'' v
+            const Vec3<Real> change = turned_[static_cast<std::size_t>(e * group.particles() + k)] - slope;
+            scale[count + at] += Real(sqrt(norm2(change) * norm2(place))) / step;
+          }
           g[count + at] += dot(slope, v);
           scale[count + at] += Real(sqrt(norm2(slope) * norm2(v)));
         }
@@ -60,10 +70,7 @@ template <class Real> class HeldEquations final : public Equations<Real> {
     const Real step = small_step(s);
     if (step == Real(0)) return;
     for (const int side : {1, -1}) {
-      for (Index i = 0; i < n; ++i) {
-        const Vec3<Real> x = s.positions()[i], v = s.velocities()[i];
-        moved_.set(i, Vec3<Real>(x + Real(side) * step * v));
-      }
+      for (Index i = 0; i < n; ++i) move(s, i, Real(side) * step);
       put(ConstraintPositions<Real>(moved_), Real(side) / (Real(2) * step), G, 0, first + count);
     }
   }
@@ -73,6 +80,11 @@ template <class Real> class HeldEquations final : public Equations<Real> {
     for (const auto& group : set_.groups()) {
       for (Index c = 0; c < group->size(); ++c) visit(*group, c);
     }
+  }
+  /// Puts a particle where it would be after a short time.
+  void move(const ParticleSystem<Real>& s, Index i, const Real& time) {
+    const Vec3<Real> x = s.positions()[i], v = s.velocities()[i];
+    moved_.set(i, Vec3<Real>(x + time * v));
   }
   /// Adds `factor` times the gradients at x to rows from `row` on.
   void put(const ConstraintPositions<Real>& x, const Real& factor, Gradients& G, Index row, Index column) {
@@ -106,7 +118,7 @@ template <class Real> class HeldEquations final : public Equations<Real> {
   }
 
   ConstraintSet set_;
-  std::vector<Vec3<Real>> gradients_;
+  std::vector<Vec3<Real>> gradients_, turned_;
   VectorColumn<Real> moved_;
 };
 

@@ -213,8 +213,10 @@ template <class V> OptionValue::Value option_value(const V& value) {
 
 template <class V> void set_option(V& target, const OptionValue::Value& value) {
   if constexpr (is_optional<V>::value) {
-    target.reset();
-    if (value.index() != 0) set_option(target.emplace(), value);
+    if (value.index() == 0) return target.reset();
+    typename V::value_type given{};
+    set_option(given, value);
+    target = std::move(given);
   } else if constexpr (std::is_enum_v<V>) {
     for (const auto& [known, name] : EnumNames<V>::values) {
       if (name == std::get<std::string>(value)) target = known;

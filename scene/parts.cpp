@@ -31,6 +31,7 @@
 #include "integrators/systems/double_pendulum.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
 #include "integrators/systems/heat_line.hpp"
+#include "integrators/systems/kerr.hpp"
 #include "integrators/systems/lorenz.hpp"
 #include "integrators/systems/nonseparable_oscillator.hpp"
 #include "integrators/systems/pendulum.hpp"
@@ -38,6 +39,7 @@
 #include "integrators/systems/prothero_robinson.hpp"
 #include "integrators/systems/rc_ladder.hpp"
 #include "integrators/systems/robertson.hpp"
+#include "integrators/systems/schwarzschild.hpp"
 #include "integrators/systems/turning_frame.hpp"
 #include "integrators/tidal.hpp"
 #include "integrators/velocity_rescaling.hpp"
@@ -128,6 +130,22 @@ struct Collision {
   StopRule rule() const { return closer_than(distance); }
 };
 
+void add_systems(Parts& parts) {
+  parts.add_system<Robertson>();
+  parts.add_system<RcLadder>();
+  parts.add_system<HeatLine>();
+  parts.add_system<Lorenz>();
+  parts.add_system<ProtheroRobinson>();
+  parts.add_system<ForcedDampedOscillator>();
+  parts.add_system<NonseparableOscillator>();
+  parts.add_system<Schwarzschild>();
+  parts.add_system<Kerr>();
+  parts.add_system<TurningFrame>();
+  parts.add_system<SimplePendulum>();
+  parts.add_system<DoublePendulum>();
+  parts.add_system<PolarKepler>();
+}
+
 }  // namespace
 
 Parts standard_parts() {
@@ -172,17 +190,7 @@ Parts standard_parts() {
   parts.add_constraint<OnCylinder>();
   parts.add_constraint<OnCircle>();
   parts.add_constraint<OnLine>();
-  parts.add_system<Robertson>();
-  parts.add_system<RcLadder>();
-  parts.add_system<HeatLine>();
-  parts.add_system<Lorenz>();
-  parts.add_system<ProtheroRobinson>();
-  parts.add_system<ForcedDampedOscillator>();
-  parts.add_system<NonseparableOscillator>();
-  parts.add_system<TurningFrame>();
-  parts.add_system<SimplePendulum>();
-  parts.add_system<DoublePendulum>();
-  parts.add_system<PolarKepler>();
+  add_systems(parts);
   parts.add_monitor<Energy>();
   parts.add_monitor<Momentum>();
   parts.add_monitor<AngularMomentum>();

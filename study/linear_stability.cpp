@@ -99,7 +99,9 @@ class ClassicalStep {
   Vector<double> y_;
 };
 
-bool remembers(const MethodInfo& info) { return info.family == "multistep" || info.name == "bdf"; }
+bool remembers(const MethodInfo& info) {
+  return info.family == "multistep" || info.name == "bdf" || info.name.starts_with("tao_");
+}
 
 bool is_over_action(const MethodChoice& choice) {
   return make_method<double>(*choice.info, choice.options)->claims().second_order_only;
