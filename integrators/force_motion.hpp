@@ -161,6 +161,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     ForceSink<Real> sink(a_, work_, {}, &beside_workspace_);
     gravity_.beside.add_to(sink, work_);
     this->note(sink.failure());
+    if (sink.failure()) spoil(a_);
     a.resize(3 * work_.size());
     write(a.data());
   }
@@ -194,7 +195,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
       ForceSink<Real> sink(a_, work_, {}, &workspace_);
       forces_.add_secant_to(sink, *other_, work_);
       this->note(sink.failure());
-      if (sink.failure()) spoil();  // what is there is not all of it
+      if (sink.failure()) spoil(a_);  // what is there is not all of it
       a.resize(3 * work_.size());
       write(a.data());
     } else {
@@ -305,7 +306,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
           ForceSink<Pack> sink =
               sets_ ? ForceSink<Pack>::unset(pack_a_, packs_) : ForceSink<Pack>(pack_a_, packs_, {}, &workspace_);
           forces_.add_to(sink, packs_);
-          return this->note(sink.failure());
+          return note_in_lanes(sink.failure());
         } catch (const LanesDiffer&) {
           careful_ = 100;
         }
@@ -315,8 +316,13 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
       ForceSink<Pack> sink(pack_a_, packs_, {}, &workspace_);
       sink.set_lane_by_lane(&place);
       add_in_lanes(forces_, sink, packs_);
-      this->note(sink.failure());
+      note_in_lanes(sink.failure());
     }
+  }
+  /// What cannot be computed in one lane leaves numbers in none: no step can stand on these stages.
+  void note_in_lanes(const std::optional<Failure>& failure) {
+    this->note(failure);
+    if (failure) spoil(pack_a_);
   }
 
   /// One stage after the other, straight into the particles and out of them.
@@ -358,10 +364,10 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     forces_.add_to(sink, work_);
     if (!sink.failure()) return;
     this->note(sink.failure());
-    spoil();
+    spoil(a_);
   }
-  void spoil() {
-    for (int k = 0; k < 3; ++k) std::fill_n(a_.component(k), a_.size(), Real(std::numeric_limits<double>::quiet_NaN()));
+  template <class Number> static void spoil(VectorColumn<Number>& a) {
+    for (int k = 0; k < 3; ++k) std::fill_n(a.component(k), a.size(), Number(std::numeric_limits<double>::quiet_NaN()));
   }
   void write(Real* out) const {
     for (int k = 0; k < 3; ++k) std::copy_n(a_.component(k), work_.size(), out + k * work_.size());

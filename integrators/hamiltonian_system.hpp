@@ -2,6 +2,7 @@
 /// Hamiltonian systems given by one function H(t, q, p), which need not be kinetic and potential energy.
 
 #include "integrators/first_order_system.hpp"
+#include "integrators/named_invariant.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +22,9 @@ namespace noether {
 ///
 /// It may also offer `std::vector<double> start() const`, all q and then all p that it begins with,
 /// `std::vector<std::string> names() const` of them, `std::vector<double> exact(double t) const`, the solution from
-/// `start()` at time 0, and `static constexpr bool time_dependent = true`, which it has to say where H depends on t.
+/// `start()` at time 0, `std::vector<NamedInvariant> invariants() const`, what its motion keeps beside H, for methods
+/// that are to keep it too, and `static constexpr bool time_dependent = true`, which it has to say where H depends on
+/// t.
 /// Rates and their Jacobian are derivatives of `value` by dual numbers, exact to rounding.
 template <class S, class Real>
 concept HamiltonianSystem = requires(const S& system, const Real& t, const Vector<Real>& q, const Vector<Real>& p) {
@@ -30,49 +33,6 @@ concept HamiltonianSystem = requires(const S& system, const Real& t, const Vecto
 };
 
 namespace detail {
-
-/// The canonical rates of H over numbers `Real`, and what they are computed in.
-template <class S, class Real> class CanonicalRates {
- public:
-  /// dy = (dH/dp, -dH/dq) at y = (q, p); dy has its size.
-  /// @cost H in numbers with four slopes, for every four variables
-  void find(const S& system, const Real& t, const Vector<Real>& y, Vector<Real>& dy) {
-    const Index n = y.size() / 2;
-    q_.resize(n);
-    p_.resize(n);
-    for (Index i = 0; i < n; ++i) {
-      q_[i] = y[i];
-      p_[i] = y[n + i];
-    }
-    const Sloped time(t);
-    for (Index first = 0; first < 2 * n; first += slopes) {
-      const Index last = std::min(first + slopes, 2 * n);
-      for (Index j = first; j < last; ++j) slope(j, j - first) = Real(1);
-      const Sloped h = system.value(time, q_, p_);
-      for (Index j = first; j < last; ++j) {
-        slope(j, j - first) = Real(0);
-        const Real& along = h.slope[static_cast<std::size_t>(j - first)];
-        if (j < n) {
-          dy[n + j] = -along;
-        } else {
-          dy[j - n] = along;
-        }
-      }
-    }
-  }
-
- private:
-  static constexpr Index slopes = 4;
-  using Sloped = Dual<Real, static_cast<std::size_t>(slopes)>;
-
-  Real& slope(Index variable, Index direction) {
-    const Index n = q_.size();
-    Sloped& of = variable < n ? q_[variable] : p_[variable - n];
-    return of.slope[static_cast<std::size_t>(direction)];
-  }
-
-  Vector<Sloped> q_, p_;
-};
 
 template <class S> constexpr bool depends_on_time() {
   if constexpr (requires { S::time_dependent; }) return S::time_dependent;
@@ -132,6 +92,13 @@ template <class S, class Real> class CanonicalMotion final : public VectorField<
     for (Index i = 0; i < n; ++i) out[i] = moving_rates_[i].slope[0];
   }
 
+  std::vector<FieldInvariant<Real>> invariants() const override {
+    std::vector<FieldInvariant<Real>> all;
+    if constexpr (requires { system_.invariants(); }) {
+      for (const NamedInvariant& one : system_.invariants()) all.push_back(one.template over<Real>());
+    }
+    return all;
+  }
   bool has_hamiltonian() const override { return true; }
   Real hamiltonian(const Real& t, const Vector<Real>& y) override {
     const Index n = y.size() / 2;

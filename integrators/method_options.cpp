@@ -9,6 +9,8 @@ std::string option_text(const OptionValue::Value& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
   if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
   if (const std::string* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* list = std::get_if<std::vector<std::string>>(&value))
+    return fmt::format("{}", fmt::join(*list, ", "));
   return "default";
 }
 

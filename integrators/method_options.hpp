@@ -48,15 +48,15 @@ template <> struct EnumNames<SpinAxes> {
 
 /// One option as data: its description and its value.
 struct OptionValue {
-  using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
+  using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::string>>;
 
   std::string_view name, dimension, help;
-  std::string_view kind;                       ///< flag, whole number, number, text or choice
+  std::string_view kind;                       ///< flag, whole number, number, text, choice, or list of texts
   std::vector<std::string_view> choices = {};  ///< of a choice
   Value value = {};                            ///< a choice by its name; monostate: the method decides
 };
 
-/// A value as messages have it: "true", "0.25", "dense", "default".
+/// A value as messages have it: "true", "0.25", "dense", "energy, momentum", "default".
 std::string option_text(const OptionValue::Value& value);
 
 struct MethodOptions;
@@ -201,10 +201,12 @@ template <class V> OptionValue::Value option_value(const V& value) {
     return {};
   } else if constexpr (std::is_same_v<V, bool> || std::is_same_v<V, std::string>) {
     return value;
+  } else if constexpr (std::is_same_v<V, std::vector<std::string>>) {  // an empty one says nothing
+    return value.empty() ? OptionValue::Value() : value;
   } else if constexpr (std::is_integral_v<V>) {
     return static_cast<std::int64_t>(value);
   } else {
-    static_assert(std::is_same_v<V, double>, "an option is a flag, a number, a text or a choice");
+    static_assert(std::is_same_v<V, double>, "an option is a flag, a number, a text, a choice or a list of texts");
     return value;
   }
 }
@@ -219,6 +221,8 @@ template <class V> void set_option(V& target, const OptionValue::Value& value) {
     for (const auto& [known, name] : EnumNames<V>::values) {
       if (name == std::get<std::string>(value)) target = known;
     }
+  } else if constexpr (std::is_same_v<V, std::vector<std::string>>) {
+    target = value.index() != 0 ? std::get<V>(value) : V();
   } else if constexpr (std::is_integral_v<V> && !std::is_same_v<V, bool>) {
     target = static_cast<V>(std::get<std::int64_t>(value));
   } else {

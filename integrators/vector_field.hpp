@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -58,6 +59,12 @@ struct FieldClaims {
   std::string_view no_action = "";  ///< why no action tells the motion; empty: the Lagrangian gives one
   bool keeps_momentum = false;
   bool keeps_angular_momentum = false;
+};
+
+/// What a motion keeps, as its gradient at y, shape (size).
+template <class Real> struct FieldInvariant {
+  std::string name;
+  std::function<void(const Vector<Real>& y, Vector<Real>& gradient)> gradient;
 };
 
 template <class Real> class LieField;
@@ -143,6 +150,8 @@ template <class Real> class VectorField {
     const Real potential_energy = potential(t, y);
     return kinetic(y) + potential_energy;
   }
+  /// What its motion keeps beside the energy and the momenta, as far as it names that.
+  virtual std::vector<FieldInvariant<Real>> invariants() const { return {}; }
   /// Newton's constant, where masses of no size attract each other [length^3/mass/time^2]; empty where they do not.
   virtual std::optional<double> gravity_of_points() const { return {}; }
   /// Whether anything else acts on them.

@@ -4,6 +4,7 @@
 #include "constraints/constraint_residual.hpp"
 #include "constraints/distance.hpp"
 #include "constraints/surfaces.hpp"
+#include "forces/anharmonic_chain.hpp"
 #include "forces/bonded.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
@@ -163,6 +164,7 @@ Parts standard_parts() {
   parts.add_force<HarmonicField>();
   parts.add_force<HenonHeiles>();
   parts.add_force<FermiPastaUlam>();
+  parts.add_force<AnharmonicChain>();
   parts.add_force<LennardJonesForce>();
   parts.add_force<WcaForce>();
   parts.add_force<MorseForce>();

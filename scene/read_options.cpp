@@ -1,5 +1,7 @@
 #include "scene/read_options.hpp"
 
+#include "numbers/text.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,10 +15,11 @@ namespace {
 SceneValue value_of(const OptionValue& option, const UnitSystem& units) {
   return std::visit(
       [&](const auto& value) {
-        using V = std::remove_cvref_t<decltype(value)>;
-        if constexpr (std::is_same_v<V, double>) return detail::quantity_value(value, option.dimension, units);
-        if constexpr (!std::is_same_v<V, std::monostate> && !std::is_same_v<V, double>) return SceneValue::of(value);
-        return SceneValue();
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, std::monostate>) {
+          return SceneValue();
+        } else {
+          return detail::field_value(value, option.dimension, units);
+        }
       },
       option.value);
 }
@@ -25,11 +28,27 @@ std::vector<std::string> choices_of(const OptionValue& option) {
   return {option.choices.begin(), option.choices.end()};
 }
 
+/// The texts of a list, one at least. A text alone is a list of its words, parted by commas, as older scenes have it.
+std::vector<std::string> read_texts(TableReader& reader, std::string_view key) {
+  const SceneValue& value = *reader.find(key);
+  std::vector<std::string> texts;
+  if (const std::string* words = value.get<std::string>()) {
+    std::string spaced = *words;
+    std::replace(spaced.begin(), spaced.end(), ',', ' ');
+    texts = words_of(spaced);
+  } else {
+    detail::read_field(reader, key, "1", texts);
+  }
+  if (texts.empty()) reader.fail(key, fmt::format("{} = {} is empty; give one text or more", key, to_text(value)));
+  return texts;
+}
+
 OptionValue::Value read_option(TableReader& reader, const OptionValue& option) {
   const std::string_view key = option.name;
   if (option.kind == "flag") return reader.flag(key, false);
   if (option.kind == "whole number") return *reader.integer(key);
   if (option.kind == "number") return *reader.quantity(key, option.dimension);
+  if (option.kind == "list") return read_texts(reader, key);
   std::string text = reader.text(key);
   const std::vector<std::string> choices = choices_of(option);
   if (option.kind == "choice" && std::find(choices.begin(), choices.end(), text) == choices.end()) {

@@ -38,13 +38,13 @@ template <class Real> void AverageField4<Real>::bind(const VectorField<Real>& f)
   low_.assign(static_cast<std::size_t>(f.size()), Real(0));
   for (auto* v : {&slope_, &fresh_, &average_, &middle_, &product_, &update_}) v->setZero(f.size());
   sums_ = {f.size()};
-  nodes_ = fewest_nodes;
+  table_ = &line_table<Real>(fewest_nodes, 1);
 }
 
 /// The average of f along the line.
 template <class Real>
 void AverageField4<Real>::average(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
-  const LineTable<Real>& table = line_table<Real>(nodes_, 1);
+  const LineTable<Real>& table = *table_;
   for (Index i = 0; i < y.size(); ++i) line_[static_cast<std::size_t>(lane_count * i)] = slope_[i];
   average_.setZero();
   for (std::size_t e = 0; e < table.eights.size(); ++e) {
@@ -143,9 +143,9 @@ template <class Real> bool AverageField4<Real>::has_enough_nodes() const {
                        : has_enough_nodes(0, rated_ / 2) && has_enough_nodes(rated_ / 2, rated_);
 }
 template <class Real> bool AverageField4<Real>::has_enough_nodes(Index begin, Index end) const {
-  const LineTable<Real>& table = line_table<Real>(nodes_, 1);
+  const LineTable<Real>& table = *table_;
   double worst = 0, largest = 0;
-  for (int m = nodes_ - 2; m < nodes_; ++m) {
+  for (int m = table.nodes - 2; m < table.nodes; ++m) {
     for (Index i = begin; i < end; ++i) {
       Real sum(0);
       for (std::size_t e = 0; e < table.eights.size(); ++e) {
@@ -159,14 +159,15 @@ template <class Real> bool AverageField4<Real>::has_enough_nodes(Index begin, In
     }
   }
   const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon()) / 2048;
-  return worst <= largest * std::pow(rounding, (nodes_ - 1.0) / (2.0 * nodes_ - 1));
+  return worst <= largest * std::pow(rounding, (table.nodes - 1.0) / (2.0 * table.nodes - 1));
 }
 
 template <class Real>
 StepResult AverageField4<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
   StepResult made{.h = h};
   f.rate(t, y, slope_);
-  for (nodes_ = fewest_nodes;; nodes_ *= 2) {
+  for (int nodes = fewest_nodes;; nodes *= 2) {
+    table_ = &line_table<Real>(nodes, 1);
     if (!sweep(f, t, y, h) && !iterate(f, t, y, h)) {
       made.failure = Failure{
           Outcome::Kind::solver_failure, -1, "slope",
@@ -174,13 +175,13 @@ StepResult AverageField4<Real>::step(VectorField<Real>& f, const Real& t, Vector
       return made;
     }
     if (has_enough_nodes()) break;
-    if (nodes_ < most_nodes) continue;
+    if (nodes < most_nodes) continue;
     ++f.evaluations().unsettled;  // forces with a kink, or a step far too long
     break;
   }
   std::fill(line_.begin(), line_.end(), Real(0));
   for (Index i = 0; i < y.size(); ++i) line_[static_cast<std::size_t>(lane_count * i)] = slope_[i];
-  sums_.finish(line_.data(), line_table<Real>(nodes_, 1).word_ends, h, nullptr, nullptr, y.data(), low_.data());
+  sums_.finish(line_.data(), table_->word_ends, h, nullptr, nullptr, y.data(), low_.data());
   return made;
 }
 

@@ -47,7 +47,7 @@ template <class Real> class AverageField4 final : public Method<Real> {
   bool has_enough_nodes(Index begin, Index end) const;
 
   std::string_view name_;
-  int nodes_ = 8;
+  const LineTable<Real>* table_ = nullptr;
   bool second_order_ = false;
   Index rated_ = 0;  ///< variables whose rates are evaluated
   StageArithmetic<Real> sums_;

@@ -303,7 +303,7 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
     if (round > std::max(2, unseen + 1) && shrinks >= 1) {
       // At rounding level it no longer shrinks; above, it never will.
       const double noise = std::is_same_v<Real, double> ? 1e-12 : 1e-28;
-      if (relative < noise || is_rounding(y, h, static_cast<double>(change))) return Sweeps::converged;
+      if (relative < noise || is_rounding(y, rates_of(), h, static_cast<double>(change))) return Sweeps::converged;
       if (round > patience) return Sweeps::diverged;
     }
     before = relative;
@@ -404,22 +404,6 @@ template <class Real> UpdateSize Collocation<Real>::size_of_update(const Vector<
   return worst;
 }
 
-/// Whether a change of all rates would change y by rounding alone, relative to its largest values: where forces nearly
-/// vanish, their rounding is that of the positions they come from, and at turning points velocities have no size
-/// either.
-template <class Real> bool Collocation<Real>::is_rounding(const Vector<Real>& y, double h, double change) const {
-  const auto largest = [&](Index begin, Index end) {
-    double most = 0;
-    for (Index i = begin; i < end; ++i) most = std::max(most, std::abs(static_cast<double>(y[i])));
-    return most;
-  };
-  const double kick = std::abs(h) * change, little = std::is_same_v<Real, double> ? 1e-13 : 1e-29;
-  if (!second_order_) return kick < little * largest(0, n_);
-  const double moved = std::abs(h) * kick, size = largest(0, n_);
-  constexpr double ulps = std::is_same_v<Real, double> ? 0x1p-48 : 0x1p-108;
-  return moved < ulps * size || (moved < little * size && kick < little * largest(n_, 2 * n_));
-}
-
 template <class Real> void Collocation<Real>::finish(Vector<Real>& y, double h) {
   Real *q = second_order_ ? y.data() : nullptr, *q_low = second_order_ ? low_.data() : nullptr;
   const Index v = second_order_ ? n_ : 0;
@@ -443,7 +427,7 @@ template <class Real> double Collocation<Real>::roughness(const Vector<Real>& y,
       size2 += size * size;
     }
     if (!(last2 > worst * size2)) continue;
-    if (last2 > rejecting_ * rejecting_ * size2 && is_rounding(y, h, std::sqrt(last2))) continue;
+    if (last2 > rejecting_ * rejecting_ * size2 && is_rounding(y, rates_of(), h, std::sqrt(last2))) continue;
     worst = last2 / size2;
   }
   return std::sqrt(worst);

@@ -5,6 +5,7 @@
 #include "integrators/methods/collocation_table.hpp"
 #include "integrators/methods/moving_origin.hpp"
 #include "integrators/methods/newton.hpp"
+#include "integrators/methods/rounding_change.hpp"
 #include "integrators/methods/stage_arithmetic.hpp"
 #include "integrators/methods/stage_system.hpp"
 #include "integrators/step_control.hpp"
@@ -88,7 +89,7 @@ template <class Real> class Collocation final : public Method<Real> {
   void finish(Vector<Real>& y, double h);
   double roughness(const Vector<Real>& y, double h);
   void follow(VectorField<Real>& f, Vector<Real>& y);
-  bool is_rounding(const Vector<Real>& y, double h, double change) const;
+  RatesOf rates_of() const { return second_order_ ? RatesOf::velocities : RatesOf::one_kind; }
 
   std::string_view name_;
   StageTable<Real> table_;

@@ -45,12 +45,6 @@ template <class Real> MethodClaims Hbvm<Real>::claims() const {
 
 template <class Real> void Hbvm<Real>::bind(const VectorField<Real>& f) {
   const FieldClaims claims = f.claims();
-  if (form_ && kept_.any()) {
-    throw SchemeMismatch(fmt::format("method '{}' keeps further invariants by sweeps alone, so jacobian has no effect; "
-                                     "take it out",
-                                     name_),
-                         {.key = "jacobian"});
-  }
   kept_.bind(f, name_, coefficients_);
   second_order_ = claims.second_order && !kept_.any();
   halves_ = claims.second_order && kept_.any();
@@ -124,7 +118,7 @@ template <class Real> bool Hbvm<Real>::solve(const Place& at, bool by_newton) {
     return true;
   }
   swept_ = false;
-  return !kept_.any() && iterate(at);
+  return iterate(at);
 }
 
 /// Positions (and velocities) at eight nodes from the coefficients.
@@ -198,7 +192,7 @@ template <class Real> bool Hbvm<Real>::sweep(const Place& at) {
     stalled = round > 2 && shrinks >= 1 ? stalled + 1 : 0;
     if (stalled > 0) {
       const double noise = stalled > 1 ? 0x1p18 * line_rounding<Real> : 0x1p8 * line_rounding<Real>;
-      if (relative < noise || is_rounding(at, static_cast<double>(change))) return true;
+      if (relative < noise || is_rounding(at.y, rates_of(), at.h, static_cast<double>(change))) return true;
       if (stalled > 1 && round > patience) return false;
     }
     before = relative;
@@ -206,26 +200,15 @@ template <class Real> bool Hbvm<Real>::sweep(const Place& at) {
   return false;
 }
 
-/// As `Collocation::is_rounding`: whether a change of all rates would change y by rounding alone.
-template <class Real> bool Hbvm<Real>::is_rounding(const Place& at, double change) const {
-  const auto largest = [&](Index begin, Index end) {
-    double most = 0;
-    for (Index i = begin; i < end; ++i) most = std::max(most, std::abs(static_cast<double>(at.y[i])));
-    return most;
-  };
-  const double kick = std::abs(at.h) * change, little = std::is_same_v<Real, double> ? 1e-13 : 1e-29;
-  if (two_kinds_) return kick < little * std::min(largest(0, n_ / 2), largest(n_ / 2, n_));
-  if (!second_order_) return kick < little * largest(0, n_);
-  const double moved = std::abs(at.h) * kick, size = largest(0, n_);
-  constexpr double ulps = std::is_same_v<Real, double> ? 0x1p-48 : 0x1p-108;
-  return moved < ulps * size || (moved < little * size && kick < little * largest(n_, 2 * n_));
-}
-
 /// The coefficients by Newton's iteration. It begins at rest, as that of `Collocation` does, so that its first update
 /// leads to the path of the linear problem; a new matrix is that of the middle of the path.
 template <class Real> bool Hbvm<Real>::iterate(const Place& at) {
   const auto S = static_cast<std::size_t>(coefficients_);
-  if (!system_) system_.emplace(at.f, coefficients_, table_->once, table_->twice, form_);
+  if (!system_) {
+    using Rates = typename StageSystem<Real>::Rates;
+    system_.emplace(at.f, coefficients_, table_->once, table_->twice, form_,
+                    halves_ ? Rates::all : Rates::accelerations);
+  }
   update_.resize(coefficients_ * n_);
   const auto restart = [&] {
     std::fill(g_.begin(), g_.end(), Real(0));
@@ -284,15 +267,19 @@ template <class Real> UpdateSize Hbvm<Real>::size_of_update(const Place& at) {
   moved_.resize(n_);
   from_.resize(n_);
   const auto& nodes = table_->eights.front();
+  const Index count = two_kinds_ ? n_ / 2 : n_;
   const auto add = [&](const StageMatrix<Real>& weights, std::size_t k, double factor, Index begin) {
     moved_.setZero();
     for (int j = 0; j < coefficients_; ++j) {
       moved_ += weights[static_cast<std::size_t>(j)][k] * update_.segment(j * n_, n_);
     }
-    const UpdateSize size = update_size(moved_.data(), factor, from_.data(), state_.data() + begin, n_);
-    // What is no number is larger than any.
-    if (!(size.whole <= worst.whole)) worst.whole = size.whole;
-    if (!(size.each <= worst.each)) worst.each = size.each;
+    for (Index i = 0; i < n_; i += count) {
+      const UpdateSize size =
+          update_size(moved_.data() + i, factor, from_.data() + i, state_.data() + begin + i, count);
+      // What is no number is larger than any.
+      if (!(size.whole <= worst.whole)) worst.whole = size.whole;
+      if (!(size.each <= worst.each)) worst.each = size.each;
+    }
   };
   for (std::size_t k = 0; k < static_cast<std::size_t>(nodes.nodes); ++k) {
     take_state(at, 0, k, state_);

@@ -5,6 +5,7 @@
 #include "integrators/methods/kept_invariants.hpp"
 #include "integrators/methods/line_table.hpp"
 #include "integrators/methods/newton.hpp"
+#include "integrators/methods/rounding_change.hpp"
 #include "integrators/methods/stage_system.hpp"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ namespace noether {
 /// every sweep so that these are kept too.
 ///
 /// Coefficients begin where those of the last step lead. Where sweeps do not converge, Newton's iteration finds them,
-/// with a matrix of S n rows. Sums are compensated.
+/// with a matrix of S n rows, that of the coefficients before they are changed. Sums are compensated.
 /// @cost 4 to 10 sweeps of K evaluations, eight at once where the field has lanes; by Newton's iteration one Jacobian,
 ///       one factorization of S n rows and four to eight sweeps
 /// @source BrugnanoIavernaroTrigiante2010, QuispelMcLaren2008
@@ -52,6 +53,9 @@ template <class Real> class Hbvm final : public Method<Real> {
   }
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
+
+  /// Rows of the matrix of Newton's iteration, S n; 0 where no step has asked for one.
+  Index matrix_rows() const { return system_ ? system_->rows() : 0; }
 
  private:
   /// Where a step is: what sweeps work on.
@@ -74,7 +78,9 @@ template <class Real> class Hbvm final : public Method<Real> {
   void add_update();
   UpdateSize size_of_update(const Place& at);
   void take_state(const Place& at, std::size_t eight, std::size_t lane, Vector<Real>& state);
-  bool is_rounding(const Place& at, double change) const;
+  RatesOf rates_of() const {
+    return second_order_ ? RatesOf::velocities : two_kinds_ ? RatesOf::two_kinds : RatesOf::one_kind;
+  }
   int nodes_needed(int most) const;
   bool has_enough(int nodes) const;
   double coefficient_size(int m) const;

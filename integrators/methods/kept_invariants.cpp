@@ -1,7 +1,6 @@
 #include "integrators/methods/kept_invariants.hpp"
 
 #include "numbers/suggest.hpp"
-#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 
@@ -11,56 +10,67 @@
 
 namespace noether {
 
-namespace {
-
-const std::vector<std::string>& known_invariants() {
-  static const std::vector<std::string> known = {"energy", "momentum", "angular_momentum"};
-  return known;
-}
-
-}  // namespace
-
-std::vector<std::string> LineInvariants::names() const {
-  std::string spaced = invariants.value_or("");
-  std::replace(spaced.begin(), spaced.end(), ',', ' ');
-  return words_of(spaced);
+bool LineInvariants::has(std::string_view name) const {
+  return std::find(invariants.begin(), invariants.end(), name) != invariants.end();
 }
 
 void LineInvariants::check() const {
-  for (const std::string& name : names()) {
-    const auto& known = known_invariants();
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    refuse_field("invariants", fmt::format("\"{}\"", *invariants),
-                 fmt::format("names '{}', which is not an invariant{}", name, did_you_mean(name, known)));
+  for (const std::string& name : invariants) {
+    if (std::count(invariants.begin(), invariants.end(), name) > 1) {
+      refuse_field("invariants", fmt::format("[\"{}\"]", fmt::join(invariants, "\", \"")),
+                   fmt::format("has {} twice; give it once", name));
+    }
   }
 }
 
-template <class Real>
-KeptInvariants<Real>::KeptInvariants(const LineInvariants& wanted)
-    : wanted_(wanted), any_(keeps("momentum") || keeps("angular_momentum") || !wanted.own.empty()) {}
+template <class Real> KeptInvariants<Real>::KeptInvariants(const LineInvariants& wanted) : wanted_(wanted) {
+  const auto& names = wanted.invariants;
+  any_ = !wanted.own.empty() ||
+         std::any_of(names.begin(), names.end(), [](const std::string& name) { return name != "energy"; });
+}
 
 template <class Real> bool KeptInvariants<Real>::keeps(std::string_view name) const {
-  if (!wanted_.invariants) return name == "energy";
-  const std::vector<std::string> names = wanted_.names();
-  return std::find(names.begin(), names.end(), name) != names.end();
+  return wanted_.invariants.empty() ? name == "energy" : wanted_.has(name);
+}
+
+/// What is wanted by name of what the field names, and a program's own.
+template <class Real> void KeptInvariants<Real>::take_named(const VectorField<Real>& f, std::string_view method) {
+  const FieldClaims field = f.claims();
+  const std::vector<FieldInvariant<Real>> of_field = f.invariants();
+  std::vector<std::string> known = {"energy"};
+  if (f.particles() > 0) known = {"energy", "momentum", "angular_momentum"};
+  for (const FieldInvariant<Real>& one : of_field) known.push_back(one.name);
+  named_.clear();
+  for (const std::string& name : wanted_.invariants) {
+    const auto refuse = [&](const std::string& why) {
+      throw SchemeMismatch(fmt::format("method '{}' cannot keep '{}' of '{}', which {}", method, name, field.name, why),
+                           {.key = "invariants"});
+    };
+    const auto named =
+        std::find_if(of_field.begin(), of_field.end(), [&](const auto& one) { return one.name == name; });
+    if (named != of_field.end()) {
+      named_.push_back(*named);
+    } else if (std::find(known.begin(), known.end(), name) == known.end()) {
+      refuse((of_field.empty() && field.canonical ? "names no invariants" : "has none of that name") +
+             did_you_mean(name, known));
+    } else if ((name == "momentum" && !field.keeps_momentum) ||
+               (name == "angular_momentum" && !field.keeps_angular_momentum)) {
+      refuse("does not keep it itself");
+    }
+  }
+  for (const NamedInvariant& one : wanted_.own) named_.push_back(one.template over<Real>());
 }
 
 template <class Real>
 void KeptInvariants<Real>::bind(const VectorField<Real>& f, std::string_view method, int coefficients) {
   kept_.clear();
   if (!any_) return;
+  take_named(f, method);
   const FieldClaims field = f.claims();
   coefficients_ = coefficients;
   particles_ = f.particles();
   second_order_ = field.second_order;
   const Index n = f.size(), half = n / 2;
-  const auto refuse = [&](std::string_view what) {
-    throw SchemeMismatch(
-        fmt::format("method '{}' cannot keep {} of '{}', which does not keep it itself", method, what, field.name),
-        {.key = "invariants"});
-  };
-  if (keeps("momentum") && !field.keeps_momentum) refuse("the momentum");
-  if (keeps("angular_momentum") && !field.keeps_angular_momentum) refuse("the angular momentum");
   masses_ = field.second_order ? f.masses() : Vector<Real>::Ones(half);
   weights_.resize(n);
   for (Index i = 0; i < half; ++i) {
@@ -72,24 +82,20 @@ void KeptInvariants<Real>::bind(const VectorField<Real>& f, std::string_view met
   if (keeps("energy")) add(Kind::energy, 1);
   // Methods for y' = f keep the momentum, so this one is not to lose it.
   if (field.keeps_momentum) add(Kind::momentum, 3);
-  if (keeps("angular_momentum")) add(Kind::angular_momentum, 3);
-  add(Kind::own, wanted_.own.size());
+  if (particles_ > 0 && keeps("angular_momentum")) add(Kind::angular_momentum, 3);
+  add(Kind::named, named_.size());
   const auto padded = static_cast<std::size_t>((n + 7) / 8 * 8);
   phi_.assign(kept_.size(), AlignedVector<Real>(lane_count * padded, Real(0)));
   for (auto* v : {&y_, &f_, &gradient_}) v->setZero(n);
+  counts_.assign(kept_.size(), false);
 }
 
 /// gradient_ <- that of one invariant at y_, where the field is f_.
 template <class Real> void KeptInvariants<Real>::find_gradient(const Kept& one) {
   const Index half = y_.size() / 2;
   gradient_.setZero();
-  if (one.kind == Kind::own) {
-    const NamedInvariant& own = wanted_.own[one.index];
-    if constexpr (std::is_same_v<Real, double>) {
-      own.gradient(y_, gradient_);
-    } else {
-      own.wide_gradient(y_, gradient_);
-    }
+  if (one.kind == Kind::named) {
+    named_[one.index].gradient(y_, gradient_);
   } else if (one.kind == Kind::energy) {  // where f is known, so is the gradient of H
     for (Index i = 0; i < half; ++i) {
       gradient_[i] = -masses_[i] * f_[half + i];
@@ -165,23 +171,22 @@ template <class Real> void KeptInvariants<Real>::solve() {
   using std::sqrt;
   const Index count = alpha_.size();
   const Real rounding(std::is_same_v<Real, double> ? 0x1p-40 : 0x1p-96);
-  std::vector<bool> counts(static_cast<std::size_t>(count));
   for (Index a = 0; a < count; ++a) {
     for (Index b = 0; b < a; ++b) {
       Real& into = gram_(a, b);
       for (Index c = 0; c < b; ++c) into -= gram_(a, c) * gram_(b, c);
-      into = counts[static_cast<std::size_t>(b)] ? into / gram_(b, b) : Real(0);
+      into = counts_[static_cast<std::size_t>(b)] ? into / gram_(b, b) : Real(0);
     }
     Real pivot = gram_(a, a);
     for (Index c = 0; c < a; ++c) pivot -= gram_(a, c) * gram_(a, c);
-    counts[static_cast<std::size_t>(a)] = pivot > rounding * gram_(a, a);
-    gram_(a, a) = counts[static_cast<std::size_t>(a)] ? sqrt(pivot) : Real(1);
+    counts_[static_cast<std::size_t>(a)] = pivot > rounding * gram_(a, a);
+    gram_(a, a) = counts_[static_cast<std::size_t>(a)] ? sqrt(pivot) : Real(1);
     for (Index c = 0; c < a; ++c) alpha_[a] -= gram_(a, c) * alpha_[c];
-    alpha_[a] = counts[static_cast<std::size_t>(a)] ? alpha_[a] / gram_(a, a) : Real(0);
+    alpha_[a] = counts_[static_cast<std::size_t>(a)] ? alpha_[a] / gram_(a, a) : Real(0);
   }
   for (Index a = count; a-- > 0;) {
     for (Index c = a + 1; c < count; ++c) alpha_[a] -= gram_(c, a) * alpha_[c];
-    alpha_[a] = counts[static_cast<std::size_t>(a)] ? alpha_[a] / gram_(a, a) : Real(0);
+    alpha_[a] = counts_[static_cast<std::size_t>(a)] ? alpha_[a] / gram_(a, a) : Real(0);
   }
 }
 

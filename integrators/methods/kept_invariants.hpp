@@ -2,67 +2,31 @@
 /// Invariants that line integral methods keep beside the energy.
 
 #include "engine/description.hpp"
-#include "integrators/hamiltonian_system.hpp"
 #include "integrators/methods/line_table.hpp"
+#include "integrators/named_invariant.hpp"
 
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 namespace noether {
 
-/// What a motion keeps, as its gradient: of y = (q, v) of particles, all x before all y before all z, or of y = (q, p).
-struct NamedInvariant {
-  std::string name;
-  std::function<void(const Vector<double>& y, Vector<double>& gradient)> gradient;
-  std::function<void(const Vector<Quad>& y, Vector<Quad>& gradient)> wide_gradient;
-};
-
-namespace detail {
-/// A function of q and p in the place of a Hamiltonian, so that its slopes are found as those are.
-template <class F> struct AsHamiltonian {
-  F function;
-  template <class Real> Real value(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& p) const {
-    return function(q, p);
-  }
-};
-
-template <class Real, class F> auto gradient_of(F function) {
-  return [as = AsHamiltonian<F>{std::move(function)}, rates = CanonicalRates<AsHamiltonian<F>, Real>()](
-             const Vector<Real>& y, Vector<Real>& gradient) mutable {
-    const Index n = y.size() / 2;
-    Vector<Real> canonical(y.size());
-    rates.find(as, Real(0), y, canonical);
-    gradient.head(n) = -canonical.tail(n);
-    gradient.tail(n) = canonical.head(n);
-  };
-}
-}  // namespace detail
-
-/// A user's own: `invariant("laplace_x", f)` of a function `template <class Real> Real operator()(const Vector<Real>&
-/// q, const Vector<Real>& v) const`, whose derivatives are found by dual numbers.
-template <class F> NamedInvariant invariant(std::string name, F function) {
-  return {std::move(name), detail::gradient_of<double>(function), detail::gradient_of<Quad>(function)};
-}
-
 /// What a line integral method keeps: by default the energy alone.
 struct LineInvariants {
-  std::optional<std::string> invariants = {};  ///< names, parted by commas: energy, momentum, angular_momentum
-  std::vector<NamedInvariant> own = {};        ///< and a program's own
+  std::vector<std::string> invariants = {};  ///< energy, momentum, angular_momentum, and what a system names
+  std::vector<NamedInvariant> own = {};      ///< and a program's own
 
   static constexpr auto describe() {
     return part<LineInvariants>(
         "line_integral", "what a line integral method keeps",
         field<&LineInvariants::invariants>("invariants", "1",
-                                           "what is kept: energy, momentum, angular_momentum, parted by commas; "
-                                           "default: the energy"));
+                                           "what is kept: energy, momentum, angular_momentum, and what a system "
+                                           "names; default: the energy"));
   }
-  /// @throws Error  for a name that is not known
+  /// @throws Error  for a name that is given twice
   void check() const;
-  std::vector<std::string> names() const;
+  bool has(std::string_view name) const;
 };
 
 /// The coefficients of a step, changed so that invariants I are kept:
@@ -79,7 +43,7 @@ template <class Real> class KeptInvariants {
   /// Whether there is anything to do beyond what the method keeps as it is.
   bool any() const { return any_; }
   bool keeps(std::string_view name) const;
-  /// @throws SchemeMismatch  for an invariant that the field does not have
+  /// @throws SchemeMismatch  for an invariant that the field does not have, or does not keep
   void bind(const VectorField<Real>& f, std::string_view method, int coefficients);
 
   void begin();
@@ -89,19 +53,21 @@ template <class Real> class KeptInvariants {
   void correct(Real* g);
 
  private:
-  enum class Kind : std::uint8_t { energy, momentum, angular_momentum, own };
-  /// One number that is kept: of a vector the component along an axis, of a program's own one of them.
+  enum class Kind : std::uint8_t { energy, momentum, angular_momentum, named };
+  /// One number that is kept: of a vector the component along an axis, of `named_` one of them.
   struct Kept {
     Kind kind = Kind::energy;
     std::size_t index = 0;
   };
 
+  void take_named(const VectorField<Real>& f, std::string_view method);
   void find_gradient(const Kept& one);
   void solve();
 
   LineInvariants wanted_;
   bool any_;
   std::vector<Kept> kept_;
+  std::vector<FieldInvariant<Real>> named_;  ///< of the field, and a program's own
   bool second_order_ = false;
   int coefficients_ = 1;
   Index particles_ = 0;
@@ -109,6 +75,7 @@ template <class Real> class KeptInvariants {
   std::vector<AlignedVector<Real>> phi_;   ///< of each invariant, shape (n, 8)
   Vector<Real> y_, f_, gradient_, alpha_;  ///< at one node; how much each invariant takes away
   Matrix<Real> gram_;
+  std::vector<bool> counts_;  ///< of each invariant: those before it do not determine it
 };
 
 extern template class KeptInvariants<double>;

@@ -18,14 +18,14 @@ constexpr Index cycle = 150;
 
 template <class Real>
 StageSystem<Real>::StageSystem(const VectorField<Real>& f, int stages, const StageMatrix<Real>& a,
-                               const StageMatrix<Real>& twice, std::optional<JacobianForm> form)
+                               const StageMatrix<Real>& twice, std::optional<JacobianForm> form, Rates rates)
     : stages_(stages), a_(a), twice_(twice), jacobians_(1) {
   const FieldClaims claims = f.claims();
-  second_order_ = claims.second_order;
+  second_order_ = claims.second_order && rates == Rates::accelerations;
   velocity_dependent_ = claims.velocity_dependent;
   n_ = second_order_ ? f.size() / 2 : f.size();
   if (Sparsity known = f.sparsity(); !known.empty() && !second_order_) pattern_ = std::move(known);
-  if (!form && !pattern_ && stages_ * n_ > most_dense) form = JacobianForm::matrix_free;
+  if (!form && !pattern_ && rows() > most_dense) form = JacobianForm::matrix_free;
   jacobians_[0].bind(f, {.form = form});
   direction_.setZero(f.size());
 }
@@ -54,8 +54,7 @@ template <class Real> Real StageSystem<Real>::element(int to, int from, Index i,
 }
 
 template <class Real> bool StageSystem<Real>::factorize_dense() {
-  const Index size = stages_ * n_;
-  Matrix<Real> matrix(size, size);
+  Matrix<Real> matrix(rows(), rows());
   for (int from = 0; from < stages_; ++from) {
     for (Index j = 0; j < n_; ++j) {
       for (int to = 0; to < stages_; ++to) {
@@ -80,7 +79,7 @@ template <class Real> bool StageSystem<Real>::factorize_sparse() {
       }
     }
   }
-  Eigen::SparseMatrix<Real> matrix(stages_ * n_, stages_ * n_);
+  Eigen::SparseMatrix<Real> matrix(rows(), rows());
   matrix.setFromTriplets(elements.begin(), elements.end());
   return sparse_factors_.compute(matrix);
 }

@@ -4,6 +4,7 @@
 #include "integrators/methods/jacobian.hpp"
 #include "integrators/methods/stage_arithmetic.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace noether {
 ///     x_i - h sum_j a_ij J_i x_j = r_i                              for y' = f, J_i = df/dy
 ///     x_i - h sum_j (h (a a)_ij A_i + a_ij B_i) x_j = r_i           for q'' = a, A_i = da/dq, B_i = da/dv
 ///
+/// The second form has half the unknowns; a method whose F_i are rates of both q and v asks for the first (`Rates`).
 /// J_i is that of the beginning of the step for all stages, or that of each stage. A vector holds n variables of the
 /// first stage, then those of the second. What the `Jacobian` is, dense, sparse or matrix-free, the system is too; by
 /// default it is sparse where the field has a `sparsity`, else dense up to 1000 unknowns, matrix-free beyond.
@@ -21,11 +23,17 @@ namespace noether {
 /// @source HairerWanner1996
 template <class Real> class StageSystem {
  public:
+  enum class Rates : std::uint8_t { accelerations, all };
+
   /// @param a      of the stages, [j][i]: what stage i takes from stage j
   /// @param twice  a a
+  /// @param rates  of second order: what F_i are
   /// @throws SchemeMismatch  for a sparse form of a field that does not say where J can be other than 0
   StageSystem(const VectorField<Real>& f, int stages, const StageMatrix<Real>& a, const StageMatrix<Real>& twice,
-              std::optional<JacobianForm> form);
+              std::optional<JacobianForm> form, Rates rates = Rates::accelerations);
+
+  /// Rows of the matrix: s n.
+  Index rows() const { return stages_ * n_; }
 
   /// Takes J at (t, y) for that of all stages, counted as one Jacobian.
   void evaluate(VectorField<Real>& f, const Real& t, const Vector<Real>& y);

@@ -42,6 +42,7 @@ const std::vector<Example> all = {
     {"double_pendulum", double_pendulum::program, Length::quick},
     {"driven_oscillator", driven_oscillator::program, Length::quick, Bits::of_this_machine},
     {"fene_melt", fene_melt::program, Length::quick, Bits::of_this_machine, 100},
+    {"fermi_pasta_ulam", fermi_pasta_ulam::program, Length::quick, Bits::everywhere, 100},
     {"figure_eight", figure_eight::program, Length::quick},
     {"heat_line", heat_line::program, Length::quick, Bits::of_this_machine, 0},
     {"heavy_top", heavy_top::program, Length::quick, Bits::of_this_machine},

@@ -21,6 +21,7 @@
 #include "engine/sites.hpp"
 #include "engine/statistics.hpp"
 #include "engine/topology.hpp"
+#include "forces/anharmonic_chain.hpp"
 #include "forces/bonded.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/external_fields.hpp"
@@ -156,6 +157,9 @@ namespace examples::driven_oscillator {
 }
 namespace examples::fene_melt {
 #include "examples/fene_melt/main.cpp"
+}
+namespace examples::fermi_pasta_ulam {
+#include "examples/fermi_pasta_ulam/main.cpp"
 }
 namespace examples::figure_eight {
 #include "examples/figure_eight/main.cpp"

@@ -1,5 +1,6 @@
 /// What secants promise, for every force that has them.
 
+#include "forces/anharmonic_chain.hpp"
 #include "forces/bonded.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
@@ -45,6 +46,7 @@ std::vector<NamedForce> forces_with_secants() {
   add(HarmonicField{0.8});
   add(HenonHeiles{1.1, 3});
   add(FermiPastaUlam{.k = 20, .quartic = 1.5});
+  add(AnharmonicChain{.k = 3, .cubic = 0.8, .quartic = 1.5});
   for (const Cutoff style :
        {Cutoff::plain, Cutoff::shifted, Cutoff::shifted_force, Cutoff::switch_c2, Cutoff::switch_c4}) {
     add(LennardJonesForce{.cutoff = 2.4, .cutoff_style = style, .epsilon = 1.3, .sigma = 1.1});

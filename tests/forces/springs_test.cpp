@@ -3,6 +3,7 @@
 #include "forces/springs.hpp"
 
 #include "engine/simulation.hpp"
+#include "forces/anharmonic_chain.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
 #include "forces/sum.hpp"
@@ -38,6 +39,7 @@ TEST_CASE("springs are minus the gradients of their energies, with and without a
   slack.length = 0;
   CHECK(gradient_error(slack, s) < 1e-20);
   CHECK(gradient_error(FermiPastaUlam{.k = 3, .quartic = 0.5}, s) < 1e-20);
+  CHECK(gradient_error(AnharmonicChain{.k = 3, .cubic = -0.7, .quartic = 0.5}, s) < 1e-20);
 }
 
 TEST_CASE("bonds keep momentum and angular momentum, and reach the particles they tie only", "[springs]") {

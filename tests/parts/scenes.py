@@ -210,6 +210,7 @@ FORCES = {
         "type = 'oscillating_field'; acceleration = [0.1, 0.0, 0.2]; omega = 3.0; phase = 0.2", SPRING)),
     "harmonic_field": Case(PAIR, forces(SPRING)),
     "henon_heiles": Case(PAIR, forces("type = 'henon_heiles'; omega = 1.0; length = 2.0")),
+    "anharmonic_chain": Case(ROW, forces("type = 'anharmonic_chain'; k = 1; cubic = 0.25; quartic = 2")),
     "fermi_pasta_ulam": Case(ROW, forces("type = 'fermi_pasta_ulam'; k = 100")),
     "lennard_jones": salt(LENNARD_JONES),
     "wca": salt("type = 'wca'; epsilon = 0.1; sigma = 1.4"),
