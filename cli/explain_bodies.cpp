@@ -35,16 +35,15 @@ BodyCount counted_bodies(const Scene& scene) {
   return count;
 }
 
-std::string rotor_of(const Scene& scene) {
+std::string turns_of(const Scene& scene) {
   const RotatingOptions& options = *scene.hamiltonian.rotating;
   if (scene.integrator.on_groups()) {
     const GroupOptions on = group_options_of(scene.integrator.classical->options);
     return fmt::format("exponentials on {}, spins in axes of the {}", on.group == BodyGroup::so3 ? "SO(3)" : "SE(3)",
                        on.spin_axes == SpinAxes::body ? "body" : "space");
   }
-  if (!scene.integrator.classical && !scene.integrator.scheme.rotor.empty())
-    return std::string(scene.integrator.scheme.rotor);
-  if (options.rotor != Rotor::axes) return std::string(rotor_name(options.rotor));
+  const Rotor rotor = rotor_of(scene).value_or(options.rotor);
+  if (rotor != Rotor::axes) return std::string(rotor_name(rotor));
   const std::string_view axes = options.axes;
   return fmt::format("axes {} {} {} {} {}", axes[0], axes[1], axes[2], axes[1], axes[0]);
 }
@@ -58,7 +57,7 @@ std::string bodies_text(const Scene& scene) {
       fmt::format("rigid bodies: {} of {} site{}", count.bodies, count.sites, count.sites == 1 ? "" : "s");
   if (count.held > 0) text += fmt::format(", {} held by fixed points", count.held);
   if (count.excluded > 0) text += fmt::format("; {} pairs within a body are left out", count.excluded);
-  text += fmt::format("; rotor {}", rotor_of(scene));
+  text += fmt::format("; rotor {}", turns_of(scene));
   if (count.turns > 0) text += fmt::format("; the fastest turns {:.2g} times in a step", count.turns);
   return text;
 }
@@ -70,7 +69,7 @@ Json bodies_json(const Scene& scene) {
                        {"held", count.held},
                        {"sites", count.sites},
                        {"excluded_pairs", count.excluded},
-                       {"rotor", rotor_of(scene)},
+                       {"rotor", turns_of(scene)},
                        {"turns_per_step", count.turns}});
 }
 

@@ -2,6 +2,7 @@
 /// Hamiltonian systems given by one function H(t, q, p), which need not be kinetic and potential energy.
 
 #include "integrators/first_order_system.hpp"
+#include "integrators/hidden_time.hpp"
 #include "integrators/named_invariant.hpp"
 
 #include <algorithm>
@@ -31,15 +32,6 @@ concept HamiltonianSystem = requires(const S& system, const Real& t, const Vecto
   { system.size() } -> std::convertible_to<Index>;
   { system.value(t, q, p) } -> std::convertible_to<Real>;
 };
-
-namespace detail {
-
-template <class S> constexpr bool depends_on_time() {
-  if constexpr (requires { S::time_dependent; }) return S::time_dependent;
-  return false;
-}
-
-}  // namespace detail
 
 /// A Hamiltonian system as the classical methods see it: y = (q, p) stands in `ParticleSystem::variables`, and
 ///
@@ -126,29 +118,16 @@ template <class S, class Real> class CanonicalMotion final : public VectorField<
  private:
   /// @throws Error  where H depends on time and does not say so; without it, its energy would be taken for conserved
   void check_time(const Real& start) {
-    using std::abs, std::isfinite;
     const Index n = size() / 2;
-    using Moving = Dual<Real, 1>;
-    const Vector<Moving> q = point_.head(n).template cast<Moving>(), p = point_.tail(n).template cast<Moving>();
-    // At the start, where all q may be 0, and beside it.
-    const auto beside = [](const Vector<Moving>& of) {
-      Vector<Moving> shifted = of;
-      for (Index i = 0; i < of.size(); ++i) {
-        shifted[i].value +=
-            (Real(0.37) + Real(0.11 * static_cast<double>(i % 7))) * std::max(Real(1), Real(abs(of[i].value)));
-      }
-      return shifted;
+    const auto changes = [&](const auto& t, const auto& q, const auto& p) {
+      return detail::moves(system_.value(t, q, p));
     };
-    for (const double later : {0.0, 0.3, 7.7}) {
-      const Moving t = detail::along(start + Real(later), Real(1));
-      const Moving here = system_.value(t, q, p), there = system_.value(t, beside(q), beside(p));
-      const auto still = [](const Moving& h) { return h.slope[0] == Real(0) || !isfinite(h.slope[0]); };
-      if (still(here) && still(there)) continue;
-      throw Error(
-          fmt::format("the energy of system '{}' depends on time; let it say so: static constexpr bool "
-                      "time_dependent = true",
-                      detail::name_of(system_)));
-    }
+    const Vector<Real> q = point_.head(n), p = point_.tail(n);
+    if (!detail::hides_time(start, q, p, changes)) return;
+    throw Error(
+        fmt::format("the energy of system '{}' depends on time; let it say so: static constexpr bool "
+                    "time_dependent = true",
+                    detail::name_of(system_)));
   }
 
   S system_;

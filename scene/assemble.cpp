@@ -126,8 +126,20 @@ AnyForce<double> SceneHamiltonian::on_bodies(const AnyForce<double>& force) cons
   if (!rotating || force.claims().on_bodies) return force;
   return AnyForce<double>(OnSites<double>(ForceField<double>().add(force)));
 }
+template <class Real> ForceField<Real> SceneHamiltonian::all_on_bodies(const ForceField<Real>& all) const {
+  if (!rotating) return all;
+  ForceField<Real> at_centres, others;
+  for (std::size_t k = 0; k < all.terms().size(); ++k) {
+    (k < splitting.own.size() ? at_centres : others).add(all.terms()[k]);
+  }
+  const ForceField<Real> placed = on_bodies(others);
+  for (const AnyForce<Real>& force : placed.terms()) at_centres.add(force);
+  return at_centres;
+}
 template ForceField<double> SceneHamiltonian::on_bodies(const ForceField<double>&) const;
 template ForceField<Quad> SceneHamiltonian::on_bodies(const ForceField<Quad>&) const;
+template ForceField<double> SceneHamiltonian::all_on_bodies(const ForceField<double>&) const;
+template ForceField<Quad> SceneHamiltonian::all_on_bodies(const ForceField<Quad>&) const;
 
 AnyHamiltonian<double> SceneHamiltonian::make(const ParticleSystem<double>& particles) const {
   ForceField<double> kicking;
@@ -155,10 +167,15 @@ AnyHamiltonian<double> SceneHamiltonian::make(const ParticleSystem<double>& part
   return hamiltonian;
 }
 
+std::optional<Rotor> rotor_of(const Scene& scene) {
+  if (scene.integrator.classical || !scene.hamiltonian.rotating) return {};
+  const std::optional<Rotor> own = rotor_of(scene.integrator.scheme.rotor);
+  return own ? own : scene.hamiltonian.rotating->rotor;
+}
+
 AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
-  const std::optional<Rotor> rotor = rotor_of(scene.integrator.scheme.rotor);
-  if (!rotor || scene.integrator.classical || !scene.hamiltonian.rotating)
-    return scene.hamiltonian.make(scene.particles);
+  const std::optional<Rotor> rotor = rotor_of(scene);
+  if (!rotor || *rotor == scene.hamiltonian.rotating->rotor) return scene.hamiltonian.make(scene.particles);
   SceneHamiltonian turned = scene.hamiltonian;
   turned.rotating->rotor = *rotor;
   return turned.make(scene.particles);
@@ -176,7 +193,7 @@ std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
   if (scene.system) return scene.system->field();
   const SceneSplitting& splitting = scene.hamiltonian.splitting;
   if (scene.integrator.on_groups() && scene.hamiltonian.rotating) {
-    return std::make_unique<BodyMotion<double>>(scene.hamiltonian.on_bodies(forces_of(scene)),
+    return std::make_unique<BodyMotion<double>>(scene.hamiltonian.all_on_bodies(forces_of(scene)),
                                                 group_options_of(scene.integrator.classical->options), splitting.name);
   }
   if (splitting.only_forces) {

@@ -89,6 +89,9 @@ class SceneCheck {
       integrator_of(scene_, 0).bind(s);
     } catch (const SchemeMismatch& error) {
       integrator.fail(error.key().empty() ? "method" : error.key(), error.message());
+    } catch (const Error& error) {
+      TableReader system(context_, *top.find("system"), "[system]", "system");
+      system.fail(error.key().empty() ? "type" : error.key(), error.message());
     }
     check_rates(top);
   }

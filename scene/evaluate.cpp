@@ -75,10 +75,12 @@ void add_hamiltonian(const Scene& scene, ParticleSystem<double>& s, Evaluation& 
 
 Evaluation evaluate(const Scene& scene, bool check) {
   if (scene.system) {
-    throw SceneError(fmt::format("there is nothing to evaluate: system '{}' has neither energy nor forces; `noether "
-                                 "explain` shows how stiff it is",
-                                 scene.system->name),
-                     {.file = scene.source.file, .key = "system"});
+    const bool has_energy = field_of(scene)->claims().energy;
+    throw SceneError(
+        fmt::format("there is nothing to evaluate: system '{}' has {}; {}`noether explain` shows how stiff it is",
+                    scene.system->name, has_energy ? "no forces on particles" : "neither energy nor forces",
+                    has_energy ? "the monitor 'energy' shows its energy, and " : ""),
+        {.file = scene.source.file, .key = "system"});
   }
   ParticleSystem<double> s = scene.particles;
   s.clock() = Clock<double>::fixed(scene.integrator.start, scene.integrator.step);

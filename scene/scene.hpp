@@ -46,6 +46,8 @@ struct SceneHamiltonian {
   /// without bodies as they are.
   template <class Real> ForceField<Real> on_bodies(const ForceField<Real>& forces) const;
   AnyForce<double> on_bodies(const AnyForce<double>& force) const;
+  /// The same of all that pull, in the order of `forces_of`: those that the splitting has in itself pull at centres.
+  template <class Real> ForceField<Real> all_on_bodies(const ForceField<Real>& all) const;
 
   /// Every term that pulls: what the splitting has in itself, and the scene's forces that are no letters.
   std::vector<SceneForce> terms() const;
@@ -160,6 +162,10 @@ Clock<double> clock_of(const SceneIntegrator& integrator);
 
 /// The constraints of a scene's first `tables` tables; all of them unless told.
 ConstraintSet constraints_of(const Scene& scene, std::size_t tables = std::numeric_limits<std::size_t>::max());
+
+/// How rigid bodies of a scene turn: as its scheme has it, else as its Hamiltonian says. Empty without bodies, and for
+/// methods on their group, which have no rotor.
+std::optional<Rotor> rotor_of(const Scene& scene);
 
 /// The Hamiltonian of a scene, drag or bath included.
 AnyHamiltonian<double> hamiltonian_of(const Scene& scene);

@@ -1,5 +1,6 @@
 #include "study/candidate.hpp"
 
+#include "engine/bodies.hpp"
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
 #include "numbers/suggest.hpp"
@@ -117,7 +118,7 @@ std::vector<Candidate> default_opponents(const Scene& scene) {
   const bool split = may_be_joined(scene);
   if (scene.particles.size() == 0) {
     names.insert(names.end(), {"rk4", "dormand_prince_5", "dop853", "gauss_8", "gauss_radau_15", "adams_pece",
-                               "trapezoidal", "sdirk_4", "rodas_4", "rodas_5p", "bdf"});
+                               "trapezoidal", "sdirk_4", "rodas_4", "rodas_5p", "bdf", "galerkin_gauss_4", "magnus_6"});
   } else {
     if (split) names.insert(names.end(), {"aba_10_6_4", "verlet_aba", "verlet@" + plain(scene).info.name});
     if (!split) names.insert(names.end(), {"verlet", "yoshida_4"});
@@ -129,6 +130,7 @@ std::vector<Candidate> default_opponents(const Scene& scene) {
     } else {
       names.insert(names.end(), {"rk4", "dormand_prince_5", "dop853", "gauss_8", "gauss_radau_15",
                                  "gragg_bulirsch_stoer", "stormer_cowell_13"});
+      if (has_bodies(scene.particles)) names.emplace_back("rkmk_dop853");
     }
   }
   return those_that_serve(scene, names);

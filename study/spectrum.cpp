@@ -1,7 +1,9 @@
 #include "study/spectrum.hpp"
 
 #include "engine/bodies.hpp"
+#include "forces/sum.hpp"
 #include "integrators/eigenvalues.hpp"
+#include "integrators/force_motion.hpp"
 #include "integrators/stiffness.hpp"
 #include "numbers/error.hpp"
 #include "study/candidate.hpp"
@@ -14,6 +16,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace noether {
 
@@ -116,12 +119,30 @@ Spectrum spectrum_of(VectorField<double>& f, const ParticleSystem<double>& s, do
   return found;
 }
 
-/// x' = v, v' = a of the forces of a scene, also where a method on groups would have orientations beside them.
+/// Fixed points hold their bodies: the last one of the forces, which takes back what those before it gave.
+struct FixedPoints {
+  static std::string name() { return "fixed_points"; }
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    for (Index i = 0; i < s.size(); ++i) {
+      if (s.bodies()->is_held(i)) out.accelerations().set(i, Vec3<Real>::Zero());
+    }
+  }
+};
+
+/// All that moves a scene as y' = f(t, y); of rigid bodies the motion of their centres, whatever turns them.
 std::unique_ptr<VectorField<double>> motion_of(const Scene& scene) {
-  if (!scene.integrator.on_groups()) return field_of(scene);
-  Scene by_forces = scene;
-  by_forces.integrator.classical.reset();
-  return field_of(by_forces);
+  if (!scene.hamiltonian.rotating) return field_of(scene);
+  ForceField<double> forces = scene.hamiltonian.all_on_bodies(forces_of(scene));
+  if (scene.particles.bodies()->any_held()) forces.add(FixedPoints{});
+  return std::make_unique<ForceMotion<ForceField<double>, double>>(std::move(forces));
+}
+
+/// What goes along the way of a scene: its own method where that makes whole steps, else one that chooses them.
+std::pair<Candidate, Setting> walker_of(const Scene& scene, bool whole_steps) {
+  constexpr double tolerance = 1e-8;
+  if (whole_steps) return {candidate(scene, scene.integrator.method), {.step = scene.integrator.step}};
+  const bool turns = has_bodies(scene.particles);  // what moves points does not turn them
+  return {candidate(scene, turns ? scene.integrator.method : "dop853"), {.tolerance = tolerance}};
 }
 
 /// How far a run looks ahead for frequencies [time]; 0: not at all.
@@ -230,18 +251,16 @@ Spectrum spectrum_along(const Scene& scene) {
   if (end == 0 || is_linear(scene) || !scene.hamiltonian.constraints.empty() || scene.system) return found;
   constexpr int looks = 64;
   try {
-    const bool turns = has_bodies(scene.particles);
-    const Candidate who = candidate(scene, turns ? scene.integrator.method : "dop853");
-    const Setting setting{.step = turns ? scene.integrator.step : 0, .tolerance = turns ? 0 : 1e-8};
+    const bool turns = has_bodies(scene.particles), whole_steps = turns && !scene.integrator.adaptive();
+    const auto [who, setting] = walker_of(scene, whole_steps);
     Simulation<double> sim = assemble(variant(scene, who, setting));
     std::atomic<bool> over{false};
     sim.stop_on(&over);
     sim.on_progress([&](const Progress& now) { over = now.seconds > 1; });
-    // Whole steps where they are given.
-    const double steps = turns ? std::max(std::round(end / looks / setting.step), 1.0) : 0;
+    const double steps = whole_steps ? std::max(std::round(end / looks / setting.step), 1.0) : 0;
     for (int k = 1; k <= looks && !(k * steps * setting.step > end + setting.step / 2); ++k) {
-      const Outcome came =
-          turns ? sim.run(static_cast<std::int64_t>(steps)) : sim.run_until(scene.integrator.start + end * k / looks);
+      const Outcome came = whole_steps ? sim.run(static_cast<std::int64_t>(steps))
+                                       : sim.run_until(scene.integrator.start + end * k / looks);
       if (!came.ok()) break;
       if (turns) field->bind(sim.particles());
       const Spectrum one = spectrum_of(*field, sim.particles(), sim.time());

@@ -375,15 +375,16 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
     if (along_arcs && !found.kepler) found.kepler = kepler_steps(scene);
     const std::optional<KeplerSteps> kepler = along_arcs ? found.kepler : std::nullopt;
     if (kepler) row.theory.resonances = resonances_of(*kepler, found.mode.scale());
+    const auto turning = turning_steps(variant(scene, who, {.step = 1, .tolerance = 0}));
     const Share place{static_cast<int>(found.rows.size()) + 1, static_cast<int>(methods.size())};
     Search(scene, found, options, growth, row, place).run();
     found.solution_leaves = growth.leaves();
     const double scale = found.mode.scale();
     if (scale > 0) {
-      row.recommended_step = recommended(row, scale, kepler, found.turning);
+      row.recommended_step = recommended(row, scale, kepler, turning);
     } else {
       if (row.limit_step) row.recommended_step = *row.limit_step / 2;
-      if (const auto rule = found.turning ? found.turning->recommended() : std::nullopt)
+      if (const auto rule = turning ? turning->recommended() : std::nullopt)
         row.recommended_step = std::min(row.recommended_step.value_or(*rule), *rule);
       row.limit_h_omega.reset();
       row.gap_end.reset();

@@ -26,8 +26,20 @@ Json json_of(const KeplerSteps& kepler) {
 Json json_of(const TurningSteps& turning) {
   return Json::object({{"period", turning.period},
                        {"period_of", turning.body},
-                       {"rotor", turning.by_axes ? "axes" : "exact"},
+                       {"rotor", turning.rotor ? Json(std::string(rotor_name(*turning.rotor))) : Json()},
+                       {"limit_step", Json(turning.limit())},
                        {"rule_recommended_step", Json(turning.recommended())}});
+}
+
+/// What the fastest turn asks of steps, by what turns bodies.
+std::string turning_rule(const TurningSteps& turning, const std::string& unit) {
+  if (!turning.recommended()) return "exact turns follow it at any step";
+  const std::string rule =
+      fmt::format("20 steps in it, at most {:.4g}{}, are a rule for ", *turning.recommended(), unit);
+  if (turning.rotor == Rotor::axes) return rule + "turns axis by axis";
+  if (!turning.rotor) return rule + "methods on the group of rotations";
+  return rule +
+         fmt::format("the variational rotor, which has no turn beyond steps of about {:.4g}{}", *turning.limit(), unit);
 }
 
 }  // namespace
@@ -66,12 +78,8 @@ std::vector<std::string> turning_lines(const Stability& found) {
   if (!found.turning) return {};
   const TurningSteps& turning = *found.turning;
   const std::string unit = found.time_unit == "1" ? "" : " " + found.time_unit;
-  const std::string rule = turning.by_axes ? fmt::format(
-                                                 "20 steps in it, at most {:.4g}{}, are a rule for turns axis by "
-                                                 "axis",
-                                                 *turning.recommended(), unit)
-                                           : "exact turns follow it at any step";
-  return {fmt::format("{} turns fastest, once in {:.6g}{}: {}", turning.body, turning.period, unit, rule)};
+  return {fmt::format("{} turns fastest, once in {:.6g}{}: {}", turning.body, turning.period, unit,
+                      turning_rule(turning, unit))};
 }
 
 std::vector<std::string> growth_lines(const Stability& found) {

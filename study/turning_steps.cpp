@@ -6,11 +6,15 @@
 
 namespace noether {
 
+std::optional<double> TurningSteps::limit() const {
+  return rotor == Rotor::variational ? std::optional(period / (2 * std::acos(-1.0))) : std::nullopt;
+}
+
 std::optional<TurningSteps> turning_steps(const Scene& scene) {
   const ParticleSystem<double>& s = scene.particles;
   if (!has_bodies(s) || !scene.hamiltonian.rotating) return {};
   double fastest = 0;
-  TurningSteps steps{.by_axes = scene.hamiltonian.rotating->rotor == Rotor::axes};
+  TurningSteps steps{.rotor = rotor_of(scene)};
   for (Index i = 0; i < s.size(); ++i) {
     const Vec3<double> in_body = spin_in_body<double>(s.column<BodyOrientation>()[i], s.column<BodySpin>()[i]);
     const double rate = std::sqrt(norm2(rate_in_body<double>(in_body, s.column<BodyInertia>()[i])));

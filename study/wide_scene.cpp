@@ -28,14 +28,7 @@ void split_bodies(const SceneHamiltonian& h, const ForceField<Quad>& forces, con
     wide.reason = fmt::format("hamiltonian '{}' of rigid bodies is more than p^2/2m and forces", h.splitting.name);
     return;
   }
-  // What the splitting has in itself pulls at centres, not at sites.
-  ForceField<Quad> own, others;
-  for (std::size_t k = 0; k < forces.terms().size(); ++k) {
-    (k < h.splitting.own.size() ? own : others).add(forces.terms()[k]);
-  }
-  const ForceField<Quad> on_bodies = h.on_bodies(others);
-  for (const AnyForce<Quad>& force : on_bodies.terms()) own.add(force);
-  const AnyHamiltonian<Quad> points = KineticPotential<ForceField<Quad>, Quad>(std::move(own));
+  const AnyHamiltonian<Quad> points = KineticPotential<ForceField<Quad>, Quad>(h.all_on_bodies(forces));
   wide.splitting = Rotating<AnyHamiltonian<Quad>>(points);
 }
 

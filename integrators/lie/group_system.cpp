@@ -71,9 +71,11 @@ template <class Real> void GroupSystemField<Real>::check_start(const ParticleSys
   const auto check = [&](Index at, const char* of, Index which) {
     const double defect = std::abs(static_cast<double>(norm_defect<Real>(quaternion_at<Real>(y, at))));
     if (defect <= farthest_from_group) return;
-    throw Error(fmt::format(
-        "the quaternion of {} {} of system '{}' is not a rotation: |q|^2 - 1 is {:.3g}, but at most {:g} is expected",
-        of, which + 1, this->claims().name, defect, farthest_from_group));
+    throw Error(
+        fmt::format("the quaternion of {} {} of system '{}' is not a rotation: |q|^2 - 1 is {:.3g}, but at most "
+                    "{:g} is expected",
+                    of, which + 1, this->claims().name, defect, farthest_from_group),
+        {.key = "start"});
   };
   for (Index i = 0; i < n_; ++i) check(4 * i, "rotation", i);
   for (Index i = 0; i < m_; ++i) check(4 * n_ + 7 * i, "motion", i);

@@ -171,11 +171,10 @@ template <class Real> void RotationField<Real>::check_start(const ParticleSystem
     }
   }
   if (worst <= farthest_from_group) return;
-  throw Error(
-      fmt::format("the matrix Y of system '{}' is not a rotation: |Y^T Y - 1| is {:.3g}, but at most {:g} is expected "
-                  "of a method on "
-                  "rotations",
-                  this->claims().name, worst, farthest_from_group));
+  throw Error(fmt::format("the matrix Y of system '{}' is not a rotation: |Y^T Y - 1| is {:.3g}, but at most {:g} is "
+                          "expected of a method on rotations",
+                          this->claims().name, worst, farthest_from_group),
+              {.key = "start"});
 }
 template <class Real> void RotationField<Real>::gather(const ParticleSystem<Real>& s, Vector<Real>& y) const {
   y.resize(size());

@@ -14,6 +14,20 @@ namespace {
 }
 }  // namespace
 
+void check_own_action(std::string_view name, bool has_force, const FieldClaims& field) {
+  if (field.time_dependent) {
+    throw SchemeMismatch(
+        fmt::format("the discrete Lagrangian '{}' is told no time, but '{}' depends on it; use a method over its own "
+                    "Lagrangian, such as 'galerkin_gauss_2'",
+                    name, field.name));
+  }
+  if (!field.dissipative || has_force) return;
+  throw SchemeMismatch(
+      fmt::format("the discrete Lagrangian '{}' has no force, but '{}' has one beside its Lagrangian; give the "
+                  "discrete one a force too, or use a method such as 'galerkin_gauss_2'",
+                  name, field.name));
+}
+
 void LoneState::bind(const ParticleSystem<double>& s) {
   const std::size_t count = s.variables().size();
   if (count == 0 || count % 2 != 0 || s.size() != 0) {

@@ -10,9 +10,11 @@
 #include "integrators/variational/singular_action.hpp"
 #include "numbers/dual.hpp"
 
+#include <algorithm>
 #include <concepts>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -46,9 +48,49 @@ template <class Ld> constexpr std::string_view discrete_name() {
   }
 }
 
+/// Why a user's discrete Lagrangian cannot step a field; of forces it sees its own alone, and of time nothing.
+/// @throws SchemeMismatch
+void check_own_action(std::string_view name, bool has_force, const FieldClaims& field);
+
+/// Derivatives of L_d over numbers of any type, and what they are computed in.
+template <class Ld, class Number> class DiscreteSlopes {
+ public:
+  /// D1 L_d (`first`) or D2 L_d at (q0, q1), shape (n).
+  /// @cost L_d in numbers with four slopes, for every four coordinates
+  void find(const Ld& ld, const Vector<Number>& q0, const Vector<Number>& q1, const Number& h, bool first,
+            Vector<Number>& out) {
+    const Index n = q0.size();
+    for (Vector<Sloped>* of : {&from_, &to_}) of->resize(n);
+    for (Index i = 0; i < n; ++i) {
+      from_[i] = Sloped(q0[i]);
+      to_[i] = Sloped(q1[i]);
+    }
+    out.resize(n);
+    Vector<Sloped>& by = first ? from_ : to_;
+    for (Index begin = 0; begin < n; begin += slopes) {
+      const Index end = std::min(begin + slopes, n);
+      for (Index i = begin; i < end; ++i) by[i].slope[static_cast<std::size_t>(i - begin)] = Number(1);
+      const Sloped action = ld(from_, to_, Sloped(h));
+      for (Index i = begin; i < end; ++i) {
+        by[i].slope[static_cast<std::size_t>(i - begin)] = Number(0);
+        out[i] = action.slope[static_cast<std::size_t>(i - begin)];
+      }
+    }
+  }
+
+ private:
+  static constexpr Index slopes = 4;
+  using Sloped = Dual<Number, static_cast<std::size_t>(slopes)>;
+
+  Vector<Sloped> from_, to_;
+};
+
 /// p0 = -D1 L_d - f-, p1 = D2 L_d + f+: q1 by Newton's iteration to rounding, with D1 D2 L_d by nested dual numbers.
-/// @cost 2 n discrete Lagrangians over dual numbers for each of four to six updates, and n^2 over nested ones
+/// @cost n/4 discrete Lagrangians over numbers with four slopes for each of four to six updates, and n^2/4 over nested
+/// ones
 template <class Ld, class Real> class DiscreteMethod final : public Method<Real> {
+  using Along = Dual<Real, 1>;
+
  public:
   explicit DiscreteMethod(Ld ld) : ld_(std::move(ld)) {}
 
@@ -60,8 +102,10 @@ template <class Ld, class Real> class DiscreteMethod final : public Method<Real>
   }
   void bind(const VectorField<Real>& f) override {
     if (LagrangianField<Real>::behind(f) == nullptr) refuse_without_lagrangian(discrete_name<Ld>(), f.claims().name);
+    check_own_action(discrete_name<Ld>(), has_force, f.claims());
     n_ = f.size() / 2;
-    for (Vector<Real>* v : {&q0_, &q1_, &p0_, &left_, &update_, &before_, &minus_, &plus_}) v->resize(n_);
+    for (Vector<Real>* v : {&q0_, &q1_, &p0_, &left_, &update_, &before_, &minus_, &plus_, &slope_}) v->resize(n_);
+    for (Vector<Along>* v : {&from_, &to_, &along_slope_, &along_minus_, &along_plus_}) v->resize(n_);
     matrix_.resize(n_, n_);
   }
 
@@ -73,9 +117,10 @@ template <class Ld, class Real> class DiscreteMethod final : public Method<Real>
     if (made.failure) return made;
     h_ = h;
     find_forces(q1_, Real(h));
+    slopes_.find(ld_, q0_, q1_, Real(h), false, slope_);
     for (Index i = 0; i < n_; ++i) {
       y[i] = q1_[i];
-      y[n_ + i] = slope(q1_, Real(h), i, false) + plus_[i];
+      y[n_ + i] = slope_[i] + plus_[i];
     }
     return made;
   }
@@ -122,7 +167,8 @@ template <class Ld, class Real> class DiscreteMethod final : public Method<Real>
     const auto correct = [&]() -> std::optional<UpdateSize> {
       ++f.evaluations().force;
       find_forces(q1_, Real(h));
-      for (Index i = 0; i < n_; ++i) left_[i] = -(p0_[i] + slope(q1_, Real(h), i, true) + minus_[i]);
+      slopes_.find(ld_, q0_, q1_, Real(h), true, slope_);
+      for (Index i = 0; i < n_; ++i) left_[i] = -(p0_[i] + slope_[i] + minus_[i]);
       factors_.solve(left_, update_);
       before_ = q1_;
       q1_ += update_;
@@ -135,21 +181,6 @@ template <class Ld, class Real> class DiscreteMethod final : public Method<Real>
     return newton_to_rounding<Real>(correct, restart, [&] { return renew_matrix(f, Real(h)); });
   }
 
-  /// dL_d by component i of q0 (`first`) or of q1.
-  template <class Number>
-  Number slope_of(const Vector<Number>& q0, const Vector<Number>& q1, const Number& h, Index i, bool first) const {
-    using Seeded = Dual<Number, 1>;
-    Vector<Seeded> from(n_), to(n_);
-    for (Index k = 0; k < n_; ++k) {
-      from[k] = Seeded(q0[k]);
-      to[k] = Seeded(q1[k]);
-    }
-    (first ? from : to)[i].slope[0] = Number(1);
-    return Seeded(ld_(from, to, Seeded(h))).slope[0];
-  }
-  Real slope(const Vector<Real>& q1, const Real& h, Index i, bool first) const {
-    return slope_of<Real>(q0_, q1, h, i, first);
-  }
   void find_forces(const Vector<Real>& q1, const Real& h) {
     minus_.setZero();
     plus_.setZero();
@@ -158,18 +189,16 @@ template <class Ld, class Real> class DiscreteMethod final : public Method<Real>
 
   /// D1 D2 L_d + df-/dq1 at (q0, q1).
   bool renew_matrix(VectorField<Real>& f, const Real& h) {
-    using Along = Dual<Real, 1>;
     ++f.evaluations().jacobian;
-    Vector<Along> from(n_), to(n_), minus(n_), plus(n_);
     for (Index k = 0; k < n_; ++k) {
       for (Index i = 0; i < n_; ++i) {
-        from[i] = Along(q0_[i]);
-        to[i] = detail::along(q1_[i], Real(i == k ? 1 : 0));
-        minus[i] = plus[i] = Along(Real(0));
+        from_[i] = Along(q0_[i]);
+        to_[i] = detail::along(q1_[i], Real(i == k ? 1 : 0));
+        along_minus_[i] = along_plus_[i] = Along(Real(0));
       }
-      if constexpr (has_force) ld_.force(from, to, Along(h), minus, plus);
-      for (Index i = 0; i < n_; ++i)
-        matrix_(i, k) = slope_of<Along>(from, to, Along(h), i, true).slope[0] + minus[i].slope[0];
+      if constexpr (has_force) ld_.force(from_, to_, Along(h), along_minus_, along_plus_);
+      along_slopes_.find(ld_, from_, to_, Along(h), true, along_slope_);
+      for (Index i = 0; i < n_; ++i) matrix_(i, k) = along_slope_[i].slope[0] + along_minus_[i].slope[0];
     }
     return factors_.compute(matrix_);
   }
@@ -177,7 +206,10 @@ template <class Ld, class Real> class DiscreteMethod final : public Method<Real>
   Ld ld_;
   Index n_ = 0;
   double h_ = 0;
-  Vector<Real> q0_, q1_, p0_, left_, update_, before_, minus_, plus_;
+  Vector<Real> q0_, q1_, p0_, left_, update_, before_, minus_, plus_, slope_;
+  DiscreteSlopes<Ld, Real> slopes_;
+  DiscreteSlopes<Ld, Along> along_slopes_;
+  Vector<Along> from_, to_, along_slope_, along_minus_, along_plus_;
   Matrix<Real> matrix_;
   DenseFactors<Real> factors_;
 };

@@ -28,6 +28,15 @@ template <class Real> double size_of(const Vector<Real>& d) {
   }
   return largest;
 }
+
+/// Whether rounding of each component of p is all that is left of it.
+template <class Real> bool is_rounding(const Vector<Real>& left, const Vector<Real>& p) {
+  const double most = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+  for (Index i = 0; i < p.size(); ++i) {
+    if (!(std::abs(static_cast<double>(left[i])) <= most * std::abs(static_cast<double>(p[i])))) return false;
+  }
+  return true;
+}
 }  // namespace
 
 /// One update by Newton; where it leaves more of p than before, a shorter one. @return whether there is one
@@ -67,7 +76,7 @@ std::optional<Failure> LagrangianField<Real>::velocity(const Real& t, const Vect
   for (int made = 0; made < most; ++made) {
     if (!correct_velocity(t, q, p, renew, v)) break;
     const double change = size_of(update_), size = size_of(v);
-    if (change == 0 || size_of(off_) == 0) return {};
+    if (change == 0 || is_rounding(off_, p)) return {};
     if (change <= 64 * rounding * size && !(change < 0.5 * before)) return {};
     if (!std::isfinite(change)) break;
     renew = !(change < 0.01 * before);  // else the same matrix does what is left

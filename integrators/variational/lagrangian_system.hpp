@@ -4,9 +4,11 @@
 #include "engine/signature.hpp"
 #include "engine/symmetry.hpp"
 #include "integrators/first_order_system.hpp"
+#include "integrators/hidden_time.hpp"
 #include "integrators/variational/lagrangian_field.hpp"
 #include "numbers/dual.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -30,8 +32,9 @@ namespace noether {
 ///
 ///     template <class Real> void force(const Real& t, const Vector<Real>& q, const Vector<Real>& v,
 ///                                      Vector<Real>& f) const;   // beside the Lagrangian, such as drag: d'Alembert
-///     bool forced() const;                                       // whether there is one; default: where it has
-///     `force` std::vector<Symmetry> symmetries() const;                  // for the monitor `momentum_map`
+///     bool forced() const;                      // whether there is one; default: where it has `force`
+///     static constexpr bool time_dependent = true;               // has to be said where L or the force depends on t
+///     std::vector<Symmetry> symmetries() const;                  // for the monitor `momentum_map`
 ///     std::vector<double> start() const;                         // q, then p
 ///     std::vector<std::string> names() const;                    // of all 2 n
 ///     std::vector<double> exact(double t) const;                 // from `start()` at time 0
@@ -44,8 +47,57 @@ concept LagrangianSystem = requires(const S& system, const Real& t, const Vector
   { system.lagrangian(t, q, q) } -> std::convertible_to<Real>;
 };
 
+namespace detail {
+
+/// Momenta and forces of L over numbers of any type, and what they are computed in.
+template <class S, class Number> class ActionTerms {
+ public:
+  /// m = dL/dq' and f = dL/dq with the force beside it at (t, q, v), shape (n) each.
+  /// @cost L in numbers with four slopes, for every four of 2 n variables
+  void find(const S& system, const Number& t, const Vector<Number>& q, const Vector<Number>& v,
+            LagrangianTerms<Number>& out) {
+    const Index n = q.size();
+    for (Vector<Sloped>* of : {&q_, &v_}) of->resize(n);
+    for (Vector<Number>* of : {&out.momentum, &out.force}) of->resize(n);
+    for (Index i = 0; i < n; ++i) {
+      q_[i] = Sloped(q[i]);
+      v_[i] = Sloped(v[i]);
+    }
+    const Sloped time(t);
+    for (Index first = 0; first < 2 * n; first += slopes) {
+      const Index last = std::min(first + slopes, 2 * n);
+      for (Index j = first; j < last; ++j) slope(j, j - first) = Number(1);
+      const Sloped l = system.lagrangian(time, q_, v_);
+      for (Index j = first; j < last; ++j) {
+        slope(j, j - first) = Number(0);
+        (j < n ? out.force[j] : out.momentum[j - n]) = l.slope[static_cast<std::size_t>(j - first)];
+      }
+    }
+    if constexpr (requires { system.force(t, q, v, beside_); }) {
+      beside_.setConstant(n, Number(0));
+      system.force(t, q, v, beside_);
+      for (Index i = 0; i < n; ++i) out.force[i] = out.force[i] + beside_[i];
+    }
+  }
+
+ private:
+  static constexpr Index slopes = 4;
+  using Sloped = Dual<Number, static_cast<std::size_t>(slopes)>;
+
+  Number& slope(Index variable, Index direction) {
+    const Index n = q_.size();
+    Sloped& of = variable < n ? q_[variable] : v_[variable - n];
+    return of.slope[static_cast<std::size_t>(direction)];
+  }
+
+  Vector<Sloped> q_, v_;
+  Vector<Number> beside_;
+};
+
+}  // namespace detail
+
 /// A Lagrangian system as methods see it; q and p stand in `ParticleSystem::variables`.
-/// @cost 2 n Lagrangians over dual numbers for momenta and forces, 4 n^2 over nested ones for their derivatives
+/// @cost see `ActionTerms`; 2 n times those over dual numbers for their derivatives
 template <class S, class Real> class LagrangianMotion final : public LagrangianField<Real> {
  public:
   explicit LagrangianMotion(S system) : system_(std::move(system)) {}
@@ -55,7 +107,7 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
     return {.name = detail::name_of(system_),
             .variables = true,
             .canonical = !forced(),
-            .time_dependent = time_dependent_,
+            .time_dependent = detail::depends_on_time<S>(),
             .energy = true,
             .dissipative = forced(),
             .symplectic = !forced()};
@@ -67,7 +119,7 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
       throw Error(fmt::format("system '{}' has {} variables, but it was given {} and {} particles",
                               detail::name_of(system_), size(), s.variables().size(), s.size()));
     }
-    look_for_time(s);
+    if (!detail::depends_on_time<S>()) check_time(s);
   }
   Index size() const override { return 2 * Index(system_.size()); }
   void gather(const ParticleSystem<Real>& s, Vector<Real>& y) const override {
@@ -83,7 +135,6 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
   }
   void terms_along(const Real& t, const Vector<Real>& q, const Vector<Real>& v, const Real& dt, const Vector<Real>& dq,
                    const Vector<Real>& dv, LagrangianTerms<Real>& out) override {
-    using Along = Dual<Real, 1>;
     const Index n = q.size();
     along_q_.resize(n);
     along_v_.resize(n);
@@ -91,7 +142,7 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
       along_q_[i] = detail::along(q[i], dq[i]);
       along_v_[i] = detail::along(v[i], dv[i]);
     }
-    find<Along>(detail::along(t, dt), along_q_, along_v_, along_);
+    moving_terms_.find(system_, detail::along(t, dt), along_q_, along_v_, along_);
     out.momentum.resize(n);
     out.force.resize(n);
     for (Index i = 0; i < n; ++i) {
@@ -144,7 +195,7 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
 
  protected:
   void find_terms(const Real& t, const Vector<Real>& q, const Vector<Real>& v, LagrangianTerms<Real>& out) override {
-    find<Real>(t, q, v, out);
+    terms_.find(system_, t, q, v, out);
   }
   void find_tangent(const Real& t, const Vector<Real>& q, const Vector<Real>& v,
                     LagrangianTangent<Real>& out) override {
@@ -173,56 +224,34 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
     return has_force;
   }
 
-  /// Momenta and forces over numbers of any type: dual ones seed each variable in turn.
-  template <class Number>
-  void find(const Number& t, const Vector<Number>& q, const Vector<Number>& v, LagrangianTerms<Number>& out) const {
-    using Seeded = Dual<Number, 1>;
-    const Index n = q.size();
-    Vector<Seeded> x(n), u(n);
-    for (Index i = 0; i < n; ++i) {
-      x[i] = Seeded(q[i]);
-      u[i] = Seeded(v[i]);
-    }
-    out.momentum.resize(n);
-    out.force.resize(n);
-    const Seeded time(t);
-    for (Index i = 0; i < n; ++i) {
-      u[i].slope[0] = Number(1);
-      out.momentum[i] = Seeded(system_.lagrangian(time, x, u)).slope[0];
-      u[i].slope[0] = Number(0);
-      x[i].slope[0] = Number(1);
-      out.force[i] = Seeded(system_.lagrangian(time, x, u)).slope[0];
-      x[i].slope[0] = Number(0);
-    }
-    if constexpr (has_force) {
-      Vector<Number> beside = Vector<Number>::Constant(n, Number(0));
-      system_.force(t, q, v, beside);
-      for (Index i = 0; i < n; ++i) out.force[i] = out.force[i] + beside[i];
-    }
-  }
-
-  /// Whether dL/dt is other than 0 at the start, and at two later times that no period of round numbers hides.
-  void look_for_time(const ParticleSystem<Real>& s) {
+  /// @throws Error  where L or the force depends on time and does not say so; without it, an energy would be taken for
+  /// conserved
+  void check_time(const ParticleSystem<Real>& s) {
+    using Moving = Dual<Real, 1>;
     Vector<Real> y, v;
     gather(s, y);
     const Index n = this->coordinates();
     const Vector<Real> q = y.head(n), p = y.tail(n);
-    if (this->velocity(s.time(), q, p, v)) return;
-    Vector<Dual<Real, 1>> x(n), u(n);
-    for (Index i = 0; i < n; ++i) {
-      x[i] = Dual<Real, 1>(q[i]);
-      u[i] = Dual<Real, 1>(v[i]);
-    }
-    time_dependent_ = false;
-    for (const double later : {0.0, 0.36787944117144233, 1.2020569031595943}) {
-      const Real rate =
-          Dual<Real, 1>(system_.lagrangian(detail::along(s.time() + Real(later), Real(1)), x, u)).slope[0];
-      time_dependent_ = time_dependent_ || rate > Real(0) || rate < Real(0);
-    }
+    if (this->velocity(s.time(), q, p, v)) v.setZero(n);
+    const auto changes = [&](const Moving& t, const Vector<Moving>& x, const Vector<Moving>& u) {
+      bool any = detail::moves(Moving(system_.lagrangian(t, x, u)));
+      if constexpr (has_force) {
+        Vector<Moving> beside = Vector<Moving>::Constant(n, Moving(Real(0)));
+        system_.force(t, x, u, beside);
+        any = std::any_of(beside.begin(), beside.end(), detail::moves<Real>) || any;
+      }
+      return any;
+    };
+    if (!detail::hides_time(s.time(), q, v, changes)) return;
+    throw Error(
+        fmt::format("the Lagrangian of system '{}', or its force, depends on time; let it say so: static constexpr "
+                    "bool time_dependent = true",
+                    detail::name_of(system_)));
   }
 
   S system_;
-  bool time_dependent_ = false;
+  detail::ActionTerms<S, Real> terms_;
+  detail::ActionTerms<S, Dual<Real, 1>> moving_terms_;
   DenseFactors<Real> factors_;
   Vector<Real> rest_, direction_;
   Vector<Dual<Real, 1>> along_q_, along_v_;

@@ -13,6 +13,8 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/lie/body_motion.hpp"
+#include "integrators/variational/discrete_lagrangian.hpp"
+#include "integrators/variational/lagrangian_system.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/allocation/watched.hpp"
 #include "tests/support/catch.hpp"
@@ -174,6 +176,55 @@ TEST_CASE("no method on a group allocates inside advance", "[allocation][lie]") 
     const long start = allocations;
     const Advance done = integrator.advance(s, {.steps = 20});
     const long made = allocations - start;
+    CAPTURE(name);
+    CHECK(done.steps == 20);
+    CHECK(made == 0);
+  }
+}
+
+/// A chain of pendulums between walls, by its action; and the midpoint rule over it as a user writes it.
+struct PendulumChain {
+  Index size() const { return 6; }
+  std::vector<double> start() const { return {0.3, 0.1, -0.2, 0.4, 0.2, -0.1, 0, 0.2, 0.1, 0, -0.1, 0.3}; }
+  template <class Real> Real lagrangian(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& v) const {
+    using std::cos;
+    Real sum(0);
+    for (Index i = 0; i < q.size(); ++i) {
+      sum += v[i] * v[i] / Real(2) + cos(q[i]);
+      if (i > 0) sum -= (q[i] - q[i - 1]) * (q[i] - q[i - 1]) / Real(2);
+    }
+    return sum;
+  }
+};
+struct OfPendulumChain {
+  template <class Real> Real operator()(const Vector<Real>& q0, const Vector<Real>& q1, const Real& h) const {
+    using std::cos;
+    Real sum(0);
+    for (Index i = 0; i < q0.size(); ++i) {
+      const Real v = (q1[i] - q0[i]) / h, q = (q0[i] + q1[i]) / Real(2);
+      sum += v * v / Real(2) + cos(q);
+      if (i == 0) continue;
+      const Real before = (q0[i - 1] + q1[i - 1]) / Real(2);
+      sum -= (q - before) * (q - before) / Real(2);
+    }
+    return h * sum;
+  }
+};
+
+TEST_CASE("no method over an action allocates inside advance", "[allocation][variational]") {
+  std::vector<std::pair<std::string, Classical<double>>> all = {
+      {"own", variational(PendulumChain{}, Variational{OfPendulumChain{}})}};
+  for (const char* name : {"variational_midpoint", "galerkin_gauss_3", "galerkin_lobatto_4", "rk4"}) {
+    all.emplace_back(name, variational(PendulumChain{}, method(name)));
+  }
+  for (auto& [name, integrator] : all) {
+    ParticleSystem<double> s = initial_state(PendulumChain{});
+    s.clock() = Clock<double>::fixed(0, 0.1);
+    integrator.bind(s);
+    integrator.advance(s, {.steps = 5});
+    const long before = allocations;
+    const Advance done = integrator.advance(s, {.steps = 20});
+    const long made = allocations - before;
     CAPTURE(name);
     CHECK(done.steps == 20);
     CHECK(made == 0);

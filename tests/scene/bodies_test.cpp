@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace noether::test {
@@ -281,6 +282,24 @@ TEST_CASE("a site has the charge that it is given, 0 too, else that of its type"
   CHECK(charges("sites = 'bodies.txt'\n", "x,y,z,mass,charge\n1,0,0,1,0\n-1,0,0,1,0.5\n") ==
         std::vector<double>{0, 0.5});
   CHECK(charges("sites = 'bodies.txt'\n", "x,y,z,mass\n1,0,0,1\n-1,0,0,1\n") == std::vector<double>{-1, -1});
+}
+
+TEST_CASE("what a splitting has in itself pulls at the centres of bodies, under methods on groups too",
+          "[scene][bodies]") {
+  const std::string rock =
+      "[[particles.body]]\nname = 'sun'\nmass = 1\nx = [0, 0, 0]\nv = [0, 0, 0]\n"
+      "[[particles.rigid_body]]\nname = 'rock'\nlinear = true\nx = [1, 0, 0]\nv = [0, 1, 0]\n"
+      "site = [{place = [0.3, 0, 0], mass = 1e-4}, {place = [-0.3, 0, 0], mass = 1e-4}]\n";
+  const Scene scene =
+      BodyScene(rock, "", "reduced",
+                "[hamiltonian]\ntype = 'wisdom_holman'\nG = 1\n[integrator]\nmethod = 'rkmk_rk4'\nstep = 0.01\n"
+                "steps = 1\n")
+          .scene();
+  const auto field = field_of(scene);
+  field->bind(scene.particles);
+  VectorColumn<double> a(2);
+  field->accelerations(scene.particles, a);
+  CHECK(std::abs(std::as_const(a)[1][0] + 1) < 1e-14);  // on its sites it would be 1.3 times that
 }
 
 }  // namespace

@@ -139,6 +139,13 @@ TEST_CASE("a system has no forces to evaluate", "[scene][messages]") {
   CHECK_THROWS_WITH(evaluate(scene, false),
                     "scene.toml: there is nothing to evaluate: system 'lorenz' has neither energy nor forces; `noether "
                     "explain` shows how stiff it is");
+  const Scene orbit = read_scene(
+      "units = \"reduced\"\n[system]\ntype = \"polar_kepler\"\n[integrator]\nmethod = \"galerkin_gauss_2\"\nstep = "
+      "0.1\nsteps = 10\n",
+      "scene.toml");
+  CHECK_THROWS_WITH(evaluate(orbit, false),
+                    "scene.toml: there is nothing to evaluate: system 'polar_kepler' has no forces on particles; the "
+                    "monitor 'energy' shows its energy, and `noether explain` shows how stiff it is");
 }
 
 TEST_CASE("the monitor of variables follows one of them by name or by number", "[scene]") {

@@ -83,6 +83,21 @@ TEST_CASE("an L_d is a method by its name, and is refused where there is no acti
                     "given 3 variables and 0 particles");
 }
 
+TEST_CASE("an L_d is refused over a system that has drag or depends on time, unless it has a force too",
+          "[own action]") {
+  const SimplePendulum dragged{.damping = 0.1};
+  const auto over = [](const auto& system, auto own) {
+    return Simulation<double>(initial_state(system), variational(system, Variational{own}), 0.1);
+  };
+  CHECK_THROWS_WITH(over(dragged, OwnMidpoint{}),
+                    "the discrete Lagrangian 'discrete_lagrangian' has no force, but 'pendulum' has one beside its "
+                    "Lagrangian; give the discrete one a force too, or use a method such as 'galerkin_gauss_2'");
+  CHECK_NOTHROW(over(dragged, OwnSimpson{.drag = 0.1}));
+  CHECK_THROWS_WITH(over(test::Shaken{}, OwnMidpoint{}),
+                    "the discrete Lagrangian 'discrete_lagrangian' is told no time, but '' depends on it; use a method "
+                    "over its own Lagrangian, such as 'galerkin_gauss_2'");
+}
+
 TEST_CASE("an L_d that is singular, or turns so, names the step and the place", "[own action]") {
   Simulation<double> run(phase_state({0.1}, {1.9}), variational(Variational{OwnMidpoint{}}), 2.5);
   const Outcome outcome = run.run(400);

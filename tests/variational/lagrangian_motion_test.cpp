@@ -25,6 +25,29 @@ struct Motionless {
   }
 };
 
+/// Driven by a force that is none at rest in the origin.
+struct PushedAtRest {
+  static std::string_view name() { return "pushed_at_rest"; }
+  static Index size() { return 1; }
+  template <class Real> Real lagrangian(const Real& t, const Vector<Real>& q, const Vector<Real>& v) const {
+    using std::cos;
+    return (v[0] * v[0] - q[0] * q[0]) / Real(2) + q[0] * cos(Real(2) * t);
+  }
+};
+
+/// A drag that grows with time, beside a Lagrangian that does not know it.
+struct WearingOut {
+  static std::string_view name() { return "wearing_out"; }
+  static Index size() { return 1; }
+  template <class Real> Real lagrangian(const Real& /*t*/, const Vector<Real>& /*q*/, const Vector<Real>& v) const {
+    return v[0] * v[0] / Real(2);
+  }
+  template <class Real>
+  void force(const Real& t, const Vector<Real>& /*q*/, const Vector<Real>& v, Vector<Real>& f) const {
+    f[0] = -t * v[0];
+  }
+};
+
 Vector<double> vector_of(const std::vector<double>& list) {
   return Eigen::Map<const Vector<double>>(list.data(), static_cast<Index>(list.size()));
 }
@@ -84,10 +107,23 @@ TEST_CASE("the energy of a Lagrangian is p v - L, at rest all of it potential", 
   CHECK(!f.claims().time_dependent);
 }
 
-TEST_CASE("a Lagrangian that depends on time is found out, and one with a force is dissipative", "[lagrangian]") {
+TEST_CASE("a Lagrangian or a force that depends on time has to say so, seen also where it does not at the start",
+          "[lagrangian]") {
+  const auto run = [](const auto& system) {
+    return Simulation(initial_state(system, {0}, {0}), variational(system, method("galerkin_gauss_2")), 0.1);
+  };
+  CHECK_THROWS_WITH(run(PushedAtRest{}),
+                    "the Lagrangian of system 'pushed_at_rest', or its force, depends on time; let it say so: static "
+                    "constexpr bool time_dependent = true");
+  CHECK_THROWS_WITH(run(WearingOut{}),
+                    "the Lagrangian of system 'wearing_out', or its force, depends on time; let it say so: static "
+                    "constexpr bool time_dependent = true");
   LagrangianMotion<test::Shaken, double> shaken(test::Shaken{});
   shaken.bind(initial_state(test::Shaken{}));
   CHECK(shaken.claims().time_dependent);
+}
+
+TEST_CASE("a Lagrangian with a force beside it is dissipative", "[lagrangian]") {
   const LagrangianMotion<SimplePendulum, double> free(SimplePendulum{}), damped(SimplePendulum{.damping = 0.1});
   CHECK(!free.claims().dissipative);
   CHECK(damped.claims().dissipative);

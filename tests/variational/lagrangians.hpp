@@ -27,6 +27,7 @@ struct CentralForce {
 
 /// A wheel that a motor turns, on a spring that it shakes: time and velocities mixed.
 struct Shaken {
+  static constexpr bool time_dependent = true;
   Index size() const { return 2; }
   std::vector<double> start() const { return {0.3, -0.2, 0.5, 0.4}; }
   template <class Real> Real lagrangian(const Real& t, const Vector<Real>& q, const Vector<Real>& v) const {
