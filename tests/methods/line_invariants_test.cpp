@@ -218,7 +218,8 @@ TEST_CASE("Newton's iteration solves for S coefficients of each variable, whatev
       CHECK(free.rows == 10 * S);
       // H is quadratic, so all K have the same equations. K counts where H is evaluated, one more where a step begins,
       CHECK((dense.evaluations - 1) / K == (least.evaluations - 1) / S);
-      // and not in the matrix: one J of n columns; and S products with J, each of three H, in a product with the matrix.
+      // and not in the matrix: one J of n columns; and S products with J, each of three H, in a product with the
+      // matrix.
       CHECK(dense.products == 10 * 3);
       CHECK(free.products % (3 * S) == 0);
       CHECK(2 * free.products < 3 * direct);
