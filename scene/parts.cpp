@@ -41,6 +41,7 @@
 #include "integrators/systems/robertson.hpp"
 #include "integrators/systems/schwarzschild.hpp"
 #include "integrators/systems/turning_frame.hpp"
+#include "integrators/systems/weber.hpp"
 #include "integrators/tidal.hpp"
 #include "integrators/velocity_rescaling.hpp"
 #include "integrators/wisdom_holman.hpp"
@@ -144,6 +145,7 @@ void add_systems(Parts& parts) {
   parts.add_system<SimplePendulum>();
   parts.add_system<DoublePendulum>();
   parts.add_system<PolarKepler>();
+  parts.add_system<Weber>();
 }
 
 }  // namespace

@@ -63,6 +63,13 @@ bool LagrangianField<Real>::correct_velocity(const Real& t, const Vector<Real>& 
   return false;
 }
 
+/// Of the matrix that was factorized last.
+template <class Real> bool LagrangianField<Real>::keeps_sign() {
+  const bool negative = factors_.has_negative_determinant();
+  if (!negative_) negative_ = negative;
+  return *negative_ == negative;
+}
+
 template <class Real>
 std::optional<Failure> LagrangianField<Real>::velocity(const Real& t, const Vector<Real>& q, const Vector<Real>& p,
                                                        Vector<Real>& v) {
@@ -74,7 +81,14 @@ std::optional<Failure> LagrangianField<Real>::velocity(const Real& t, const Vect
   double before = std::numeric_limits<double>::infinity();
   bool renew = true;
   for (int made = 0; made < most; ++made) {
-    if (!correct_velocity(t, q, p, renew, v)) break;
+    const bool corrected = correct_velocity(t, q, p, renew, v);
+    if (made == 0 && !keeps_sign()) {
+      return Failure{Outcome::Kind::solver_failure, -1, "velocity",
+                     fmt::format("the determinant of d^2L/dq'^2 has changed its sign before {}: masses that depend on "
+                                 "the coordinates have become negative, and no motion goes there",
+                                 place_text(q))};
+    }
+    if (!corrected) break;
     const double change = size_of(update_), size = size_of(v);
     if (change == 0 || is_rounding(off_, p)) return {};
     if (change <= 64 * rounding * size && !(change < 0.5 * before)) return {};

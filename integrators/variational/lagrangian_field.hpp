@@ -48,11 +48,14 @@ template <class Real> class LagrangianField : public VectorField<Real> {
   virtual void terms_along(const Real& t, const Vector<Real>& q, const Vector<Real>& v, const Real& dt,
                            const Vector<Real>& dq, const Vector<Real>& dv, LagrangianTerms<Real>& out) = 0;
 
-  /// v(t, q, p), the root of p = dL/dq' that continues from rest, by Newton's iteration to rounding; not counted.
+  /// v(t, q, p), the root of p = dL/dq' that continues from rest, by Newton's iteration to rounding; not counted. The
+  /// determinant of d^2L/dq'^2 at rest has the sign that it had first since `bind`: a motion does not go through 0.
   /// @return why there is none
   std::optional<Failure> velocity(const Real& t, const Vector<Real>& q, const Vector<Real>& p, Vector<Real>& v);
 
  protected:
+  /// To be called by `bind`.
+  void forget_sign() { negative_.reset(); }
   virtual void find_terms(const Real& t, const Vector<Real>& q, const Vector<Real>& v, LagrangianTerms<Real>& out) = 0;
   virtual void find_tangent(const Real& t, const Vector<Real>& q, const Vector<Real>& v,
                             LagrangianTangent<Real>& out) = 0;
@@ -61,10 +64,12 @@ template <class Real> class LagrangianField : public VectorField<Real> {
 
  private:
   bool correct_velocity(const Real& t, const Vector<Real>& q, const Vector<Real>& p, bool renew, Vector<Real>& v);
+  bool keeps_sign();
 
   LagrangianTerms<Real> terms_;
   LagrangianTangent<Real> tangent_;
   DenseFactors<Real> factors_;
+  std::optional<bool> negative_;  ///< the determinant of d^2L/dq'^2, since `bind`
   Vector<Real> q_, p_, v_, off_, update_, tried_;
 };
 

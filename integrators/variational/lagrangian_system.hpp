@@ -119,6 +119,7 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
       throw Error(fmt::format("system '{}' has {} variables, but it was given {} and {} particles",
                               detail::name_of(system_), size(), s.variables().size(), s.size()));
     }
+    this->forget_sign();
     if (!detail::depends_on_time<S>()) check_time(s);
   }
   Index size() const override { return 2 * Index(system_.size()); }

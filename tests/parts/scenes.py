@@ -366,6 +366,7 @@ SYSTEMS = {
     "pendulum": action("type = 'pendulum'"),
     "double_pendulum": action("type = 'double_pendulum'; start = [0.5, 0.2, 0.0, 0.0]"),
     "polar_kepler": action("type = 'polar_kepler'"),
+    "weber": action("type = 'weber'"),
 }
 
 

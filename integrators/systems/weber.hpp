@@ -1,0 +1,72 @@
+#pragma once
+/// Charges under Weber's electrodynamics, by its Lagrangian.
+
+#include "engine/description.hpp"
+#include "integrators/vector_field.hpp"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+/// Any number of charges whose forces on each other depend on how fast their distances change.
+///
+///     L = sum_i m_i v_i^2 / 2 - sum_(i<j) (k e_i e_j / r) (1 + r'^2 / (2 c^2))
+///
+/// So masses depend on distances: along a pair the reduced mass mu is mu - k e_i e_j / (c^2 r), which is 0 for like
+/// charges at r = k e_i e_j / (mu c^2). A run ends there by name. Energy, momentum and angular momentum are kept.
+/// Coordinates are x, y, z of one charge after the other.
+/// @source Assis1994
+struct Weber {
+  std::vector<double> masses = {2, 2};    ///< [mass]
+  std::vector<double> charges = {1, -1};  ///< e_i, in units for which k is the factor of Coulomb's law
+  std::vector<double> positions = {0.5, 0, 0, -0.5, 0, 0};   ///< shape (n, 3) [length]
+  std::vector<double> velocities = {0, 0.4, 0, 0, -0.4, 0};  ///< shape (n, 3) [length/time]
+  double k = 1;                                              ///< of Coulomb's law [energy length]
+  double c = 5;                                              ///< [length/time]
+
+  static constexpr auto describe() {
+    return part<Weber>(
+        "weber", "charges under Weber's electrodynamics, by its Lagrangian",
+        formula("L = sum m v^2/2 - sum over pairs (k e e'/r) (1 + r'^2/(2 c^2))"), source("Assis1994"),
+        quantities("x, y, z of each charge [length], its momenta [mass length/time]"),
+        field<&Weber::masses>("masses", "mass", "of the charges"), field<&Weber::charges>("charges", "1", "e of each"),
+        field<&Weber::positions>("positions", "length", "at the start, x, y, z of one after the other"),
+        field<&Weber::velocities>("velocities", "length/time", "at the start, likewise"),
+        field<&Weber::k>("k", "energy length", "factor of Coulomb's law"),
+        field<&Weber::c>("c", "length/time", "speed of light"));
+  }
+  /// @throws Error  for lists of different lengths, masses and speeds of light that are not above 0, and two charges at
+  ///   one place
+  void check() const;
+
+  Index size() const { return 3 * std::ssize(masses); }
+  /// Positions and p = dL/dv.
+  std::vector<double> start() const;
+  std::vector<std::string> names() const;
+
+  template <class Real> Real lagrangian(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& v) const {
+    using std::sqrt;
+    Real sum(0);
+    const Index n = std::ssize(masses);
+    const Real rate = Real(1) / (Real(2) * Real(c) * Real(c));
+    for (Index i = 0; i < n; ++i) {
+      for (Index d = 3 * i; d < 3 * i + 3; ++d)
+        sum += Real(masses[static_cast<std::size_t>(i)]) * v[d] * v[d] / Real(2);
+      for (Index j = 0; j < i; ++j) {
+        Real square(0), along(0);
+        for (Index d = 0; d < 3; ++d) {
+          const Real r = q[3 * i + d] - q[3 * j + d];
+          square += r * r;
+          along += r * (v[3 * i + d] - v[3 * j + d]);
+        }
+        const Real coupling = Real(k * charges[static_cast<std::size_t>(i)] * charges[static_cast<std::size_t>(j)]);
+        sum -= coupling / sqrt(square) * (Real(1) + rate * along * along / square);
+      }
+    }
+    return sum;
+  }
+};
+
+}  // namespace noether
