@@ -6,6 +6,12 @@
 
 namespace noether {
 
+namespace {
+Vec3<double> vector_of(const std::vector<double>& all, std::size_t i) {
+  return {all[3 * i], all[3 * i + 1], all[3 * i + 2]};
+}
+}  // namespace
+
 void Weber::check() const {
   const std::size_t n = masses.size();
   const auto long_enough = [&](std::string_view key, std::size_t found, std::size_t expected) {
@@ -38,18 +44,14 @@ std::vector<double> Weber::start() const {
   }
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      double square = 0, along = 0;
-      for (std::size_t d = 0; d < 3; ++d) {
-        const double r = positions[3 * i + d] - positions[3 * j + d];
-        square += r * r;
-        along += r * (velocities[3 * i + d] - velocities[3 * j + d]);
-      }
+      const Vec3<double> x = vector_of(positions, i) - vector_of(positions, j),
+                         v = vector_of(velocities, i) - vector_of(velocities, j);
+      const double r = std::sqrt(norm2(x));
       // p = m v - (k e e' r'/(c^2 r)) times the direction
-      const double factor = k * charges[i] * charges[j] * along / (c * c * square * std::sqrt(square));
+      const double factor = k * charges[i] * charges[j] * dot(x, v) / (c * c * r * r * r);
       for (std::size_t d = 0; d < 3; ++d) {
-        const double r = positions[3 * i + d] - positions[3 * j + d];
-        state[3 * n + 3 * i + d] -= factor * r;
-        state[3 * n + 3 * j + d] += factor * r;
+        state[3 * n + 3 * i + d] -= factor * x[static_cast<int>(d)];
+        state[3 * n + 3 * j + d] += factor * x[static_cast<int>(d)];
       }
     }
   }

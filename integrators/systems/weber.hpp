@@ -2,6 +2,7 @@
 /// Charges under Weber's electrodynamics, by its Lagrangian.
 
 #include "engine/description.hpp"
+#include "engine/sums.hpp"
 #include "integrators/vector_field.hpp"
 
 #include <cmath>
@@ -27,15 +28,15 @@ struct Weber {
   double c = 5;                                              ///< [length/time]
 
   static constexpr auto describe() {
-    return part<Weber>(
-        "weber", "charges under Weber's electrodynamics, by its Lagrangian",
-        formula("L = sum m v^2/2 - sum over pairs (k e e'/r) (1 + r'^2/(2 c^2))"), source("Assis1994"),
-        quantities("x, y, z of each charge [length], its momenta [mass length/time]"),
-        field<&Weber::masses>("masses", "mass", "of the charges"), field<&Weber::charges>("charges", "1", "e of each"),
-        field<&Weber::positions>("positions", "length", "at the start, x, y, z of one after the other"),
-        field<&Weber::velocities>("velocities", "length/time", "at the start, likewise"),
-        field<&Weber::k>("k", "energy length", "factor of Coulomb's law"),
-        field<&Weber::c>("c", "length/time", "speed of light"));
+    return part<Weber>("weber", "charges under Weber's electrodynamics, by its Lagrangian",
+                       formula("L = sum m v^2/2 - sum over pairs (k e e'/r) (1 + r'^2/(2 c^2))"), source("Assis1994"),
+                       quantities("x, y, z of each charge [length], its momenta [mass length/time]"),
+                       field<&Weber::masses>("masses", "mass", "of the charges"),
+                       field<&Weber::charges>("charges", "1", "e of each"),
+                       field<&Weber::positions>("positions", "length", "at the start, x, y, z of one after the other"),
+                       field<&Weber::velocities>("velocities", "length/time", "at the start, likewise"),
+                       field<&Weber::k>("k", "energy length", "factor of Coulomb's law"),
+                       field<&Weber::c>("c", "length/time", "speed of light"));
   }
   /// @throws Error  for lists of different lengths, masses and speeds of light that are not above 0, and two charges at
   ///   one place
@@ -47,25 +48,25 @@ struct Weber {
   std::vector<std::string> names() const;
 
   template <class Real> Real lagrangian(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& v) const {
-    using std::sqrt;
-    Real sum(0);
     const Index n = std::ssize(masses);
-    const Real rate = Real(1) / (Real(2) * Real(c) * Real(c));
-    for (Index i = 0; i < n; ++i) {
-      for (Index d = 3 * i; d < 3 * i + 3; ++d)
-        sum += Real(masses[static_cast<std::size_t>(i)]) * v[d] * v[d] / Real(2);
-      for (Index j = 0; j < i; ++j) {
-        Real square(0), along(0);
-        for (Index d = 0; d < 3; ++d) {
-          const Real r = q[3 * i + d] - q[3 * j + d];
-          square += r * r;
-          along += r * (v[3 * i + d] - v[3 * j + d]);
-        }
-        const Real coupling = Real(k * charges[static_cast<std::size_t>(i)] * charges[static_cast<std::size_t>(j)]);
-        sum -= coupling / sqrt(square) * (Real(1) + rate * along * along / square);
-      }
-    }
-    return sum;
+    const auto place = [](const Vector<Real>& of, Index i) {
+      return Vec3<Real>(of[3 * i], of[3 * i + 1], of[3 * i + 2]);
+    };
+    return sum_over<Real>(n, [&](Index i) {
+      const Vec3<Real> x = place(q, i), w = place(v, i);
+      const Real of_pairs = sum_over<Real>(
+          i, [&](Index j) { return pair(i, j, Vec3<Real>(x - place(q, j)), Vec3<Real>(w - place(v, j))); });
+      return Real(masses[static_cast<std::size_t>(i)]) * norm2(w) / Real(2) - of_pairs;
+    });
+  }
+
+ private:
+  /// The summand of a pair, by where one is from the other, and by how fast that changes.
+  template <class Real> Real pair(Index i, Index j, const Vec3<Real>& x, const Vec3<Real>& v) const {
+    using std::sqrt;
+    const Real square = norm2(x), along = dot(x, v), rate = Real(1) / (Real(2) * Real(c) * Real(c));
+    const Real coupling = Real(k * charges[static_cast<std::size_t>(i)] * charges[static_cast<std::size_t>(j)]);
+    return coupling / sqrt(square) * (Real(1) + rate * along * along / square);
   }
 };
 
