@@ -175,7 +175,7 @@ TEST_CASE("a body that nothing holds turns about its spin by the closed form", "
   CHECK(std::abs(q[3] - std::sin(10.0)) < 1e-14);
 }
 
-TEST_CASE("errors of tops are measured against their own splitting in 113 bits", "[cli][own_columns][slow]") {
+TEST_CASE("errors of tops are measured against their own splitting in 113 bits", "[cli][own_columns][nightly]") {
   const SceneFolder folder(wave);
   const std::string table =
       own_output(folder, "compare scene.toml --methods yoshida_4,verlet --steps 0.02,0.01 --until 4 --json");

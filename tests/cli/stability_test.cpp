@@ -114,7 +114,7 @@ TEST_CASE("wrong requests to stability are told in one line", "[cli][stability][
 // Verdicts hold on busy machines too.
 const std::string patient = " --budget 1000";
 
-TEST_CASE("stability --suite finds the scenes that noether brings", "[cli][stability][slow]") {
+TEST_CASE("stability --suite finds the scenes that noether brings", "[cli][stability][nightly]") {
   const SceneFolder folder(spring);
   const std::string json = output(folder, "stability --suite --json" + patient);
   CHECK(is_json_line(json));

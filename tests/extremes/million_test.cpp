@@ -61,7 +61,7 @@ double allocated_bytes() {
 }  // namespace
 
 TEST_CASE("a million tracers go round a star over arcs to rounding, and under kicks to their order",
-          "[extremes][slow]") {
+          "[extremes][nightly]") {
   constexpr double dt = 0.01;
   constexpr std::int64_t steps = 4;
   // Eight roundings per arc; a circle whose speed is rounded is another one, three times as far astray by the radian.
@@ -70,7 +70,7 @@ TEST_CASE("a million tracers go round a star over arcs to rounding, and under ki
   CHECK(disk_error(kinetic_potential(Gravity{.G = 1.0}), dt, steps) < 0.04 * 0.04 * 0.04);
 }
 
-TEST_CASE("a box of a million bodies on springs swings as one would, and keeps its energy", "[extremes][slow]") {
+TEST_CASE("a box of a million bodies on springs swings as one would, and keeps its energy", "[extremes][nightly]") {
   ParticleSystem<double> box;
   for (Index k = 0; k < million; ++k) {
     const Index i = k % 100, j = k / 100 % 100, l = k / 10000;

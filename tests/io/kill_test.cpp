@@ -399,7 +399,7 @@ TEST_CASE("so does a run with a corrector and a kernel", "[trajectory][checkpoin
   die_anywhere(corrected, 6);
 }
 
-TEST_CASE("so does a large one", "[trajectory][checkpoint][kill][slow]") { die_anywhere(large, 6); }
+TEST_CASE("so does a large one", "[trajectory][checkpoint][kill][nightly]") { die_anywhere(large, 6); }
 
 TEST_CASE("the same for thousands of deaths", "[trajectory][kill][.][nightly]") {
   die_at_writes(2000);

@@ -33,7 +33,7 @@ double energy_error(const CompositionOptions& options) {
 
 // Measured: 2.1e-12 with the corrector, 4.3e-13 with the kernel, 3.0e-13 with compensation beside; 1.8e-9 without any.
 TEST_CASE("the eight planets keep their energy to 3e-12 with a corrector and to 6e-13 with the lazy kernel",
-          "[oracle][slow]") {
+          "[oracle][nightly]") {
   const double plain = energy_error({}), corrected = energy_error({.corrector = 17});
   const double lazy = energy_error({.compensated = true, .corrector = 17, .kernel = StepKernel::lazy});
   const double bare = energy_error({.corrector = 17, .kernel = StepKernel::lazy});
