@@ -31,15 +31,18 @@ Quad dexp_weight(int k) {
 
 template <class Real>
 void InverseDexp<Real>::apply(LieField<Real>& group, const Vector<Real>& u, const Vector<Real>& v, Vector<Real>& out) {
-  out = v;
-  if (terms_ == 0) return;
-  nested_ = v;
+  if (terms_ == 0) {
+    out = v;
+    return;
+  }
+  out.resize(v.size());
   for (int k = 1; k <= terms_; ++k) {
-    group.bracket(u, nested_, next_);
+    group.bracket(u, k == 1 ? v : nested_, next_);
     std::swap(nested_, next_);
     const Real weight = static_cast<Real>(dexp_weight(k));
     if (weight == Real(0)) continue;
-    for (Index i = 0; i < out.size(); ++i) out[i] += weight * nested_[i];
+    const Vector<Real>& before = k == 1 ? v : out;
+    for (Index i = 0; i < out.size(); ++i) out[i] = before[i] + weight * nested_[i];
   }
 }
 

@@ -1,7 +1,10 @@
 #include "integrators/lie/group_system.hpp"
 
+#include "integrators/lie/rotations_simd.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace noether {
 
@@ -20,7 +23,10 @@ void GroupSystemField<Real>::act(const Vector<Real>& u, const Vector<Real>& y, V
     put_at<Real>(out, at,
                  renormalized<Real>(quaternion_product<Real>(quaternion_at<Real>(y, at), rotation_by<Real>(by))));
   };
-  for (Index i = 0; i < n_; ++i) turn(4 * i, triple_at<Real>(u, 3 * i));
+  for (Index i = 0; i < n_;) {
+    if constexpr (std::is_same_v<Real, double>) i = rotation_kernels().turn(y.data(), u.data(), out.data(), i, n_);
+    for (const Index end = std::min(i + lane_count, n_); i < end; ++i) turn(4 * i, triple_at<Real>(u, 3 * i));
+  }
   for (Index i = 0; i < m_; ++i) {
     const Index at = 4 * n_ + 7 * i, from = 3 * n_ + 6 * i;
     const Vec3<Real> by = triple_at<Real>(u, from), way = way_of_motion<Real>(by, triple_at<Real>(u, from + 3));

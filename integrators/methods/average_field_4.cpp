@@ -37,7 +37,7 @@ template <class Real> void AverageField4<Real>::bind(const VectorField<Real>& f)
   rates_.assign(most_nodes * padded, Real(0));
   low_.assign(static_cast<std::size_t>(f.size()), Real(0));
   for (auto* v : {&slope_, &fresh_, &average_, &middle_, &product_, &update_}) v->setZero(f.size());
-  sums_ = {f.size()};
+  sums_ = {f.size(), 1};
   table_ = &line_table<Real>(fewest_nodes, 1);
 }
 

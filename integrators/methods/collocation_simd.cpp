@@ -12,19 +12,20 @@ using Lanes = hn::CappedTag<double, 8>;
 using Vector = hn::Vec<Lanes>;
 using BitLanes = hn::RebindToSigned<Lanes>;
 using Bits = hn::Vec<BitLanes>;
-constexpr std::ptrdiff_t stages = 8, lanes = hn::MaxLanes(Lanes());
+constexpr int stages = 8;
+constexpr std::ptrdiff_t lanes = hn::MaxLanes(Lanes());
 
-/// What `lanes` stages take from each stage: the coefficients stay in registers while the variables pass.
-class Rows {
+/// What the lanes of `D` take from each of `terms` stages: the coefficients stay in registers while the variables pass.
+template <int terms, class D> class Rows {
  public:
   explicit HWY_INLINE Rows(const double* a) {
-    for (int j = 0; j < stages; ++j) row_[j] = hn::LoadU(Lanes(), a + stages * j);
+    for (int j = 0; j < terms; ++j) row_[j] = hn::LoadU(D(), a + stages * j);
   }
   /// sum_j a_ji F_j of one variable.
-  HWY_INLINE Vector sum(const double* rates) const {
-    const Lanes d;
-    Vector even = hn::Mul(row_[0], hn::Set(d, rates[0])), odd = hn::Mul(row_[1], hn::Set(d, rates[1]));
-    for (int j = 2; j < stages; j += 2) {  // two chains: each addition waits for the one before
+  HWY_INLINE hn::Vec<D> sum(const double* rates) const {
+    const D d;
+    auto even = hn::Mul(row_[0], hn::Set(d, rates[0])), odd = hn::Mul(row_[1], hn::Set(d, rates[1]));
+    for (int j = 2; j < terms; j += 2) {  // two chains: each addition waits for the one before
       even = hn::MulAdd(row_[j], hn::Set(d, rates[j]), even);
       odd = hn::MulAdd(row_[j + 1], hn::Set(d, rates[j + 1]), odd);
     }
@@ -32,29 +33,32 @@ class Rows {
   }
 
  private:
-  Vector row_[stages];
+  hn::Vec<D> row_[terms];
 };
 
-void values(const StageSums& sums, const double* a, double* out) {
+template <int terms> void values_of(const StageSums& s, const double* a, double* out) {
   const Lanes d;
-  const StageSums s = sums;
   const Vector h = hn::Set(d, s.h);
   for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
-    const Rows rows(a + i);
+    const Rows<terms, Lanes> rows(a + i);
     for (std::ptrdiff_t m = 0; m < s.n; ++m) {
       const Vector small = hn::MulAdd(h, rows.sum(s.rates + stages * m), hn::Set(d, s.low[m]));
       hn::StoreU(hn::Add(hn::Set(d, s.y[m]), small), d, out + stages * m + i);
     }
   }
 }
-
-void positions(const StageSums& sums, const double* a, const double* c, const double* c_low, const double* v,
-               double* out) {
-  const Lanes d;
+void values(const StageSums& sums, const double* a, double* out) {
   const StageSums s = sums;
+  s.terms <= 4 ? values_of<4>(s, a, out) : values_of<8>(s, a, out);
+}
+
+template <int terms>
+void positions_of(const StageSums& s, const double* a, const double* c, const double* c_low, const double* v,
+                  double* out) {
+  const Lanes d;
   const Vector h2 = hn::Set(d, s.h2), h2_low = hn::Set(d, s.h2_low);
   for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
-    const Rows rows(a + i);
+    const Rows<terms, Lanes> rows(a + i);
     const Vector node = hn::LoadU(d, c + i), node_low = hn::LoadU(d, c_low + i);
     for (std::ptrdiff_t m = 0; m < s.n; ++m) {
       const Vector hv = hn::Set(d, s.h * v[m]);
@@ -64,6 +68,11 @@ void positions(const StageSums& sums, const double* a, const double* c, const do
       hn::StoreU(hn::Add(hn::Set(d, s.y[m]), hn::MulAdd(node, hv, small)), d, out + stages * m + i);
     }
   }
+}
+void positions(const StageSums& sums, const double* a, const double* c, const double* c_low, const double* v,
+               double* out) {
+  const StageSums s = sums;
+  s.terms <= 4 ? positions_of<4>(s, a, c, c_low, v, out) : positions_of<8>(s, a, c, c_low, v, out);
 }
 
 void extrapolation(const double* c, const double* barycentric, double ratio, double* w) {
@@ -89,16 +98,20 @@ void combine(const StageSums& sums, const double* w, double* out) {
   const Lanes d;
   const StageSums s = sums;
   for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
-    const Rows rows(w + i);
+    const Rows<stages, Lanes> rows(w + i);
     for (std::ptrdiff_t m = 0; m < s.n; ++m) hn::StoreU(rows.sum(s.rates + stages * m), d, out + stages * m + i);
   }
 }
 
 /// Sizes compare as their bits do, and what is no number is larger than all.
-HWY_INLINE Bits size_of(Vector x) { return hn::BitCast(BitLanes(), hn::Abs(x)); }
-HWY_INLINE double largest_of(Bits sizes) {
-  return hn::GetLane(hn::BitCast(Lanes(), hn::MaxOfLanes(BitLanes(), sizes)));
+template <class D> using BitsOf = hn::RebindToSigned<D>;
+template <class D> HWY_INLINE hn::Vec<BitsOf<D>> size_of(D /*d*/, hn::Vec<D> x) {
+  return hn::BitCast(BitsOf<D>(), hn::Abs(x));
 }
+template <class D> HWY_INLINE double largest_of(D d, hn::Vec<BitsOf<D>> sizes) {
+  return hn::GetLane(hn::BitCast(d, hn::MaxOfLanes(BitsOf<D>(), sizes)));
+}
+HWY_INLINE Bits size_of(Vector x) { return size_of(Lanes(), x); }
 
 std::uint8_t moved(std::ptrdiff_t n, const double* q, double* known) {
   const Lanes d;
@@ -126,8 +139,32 @@ void take(std::ptrdiff_t n, const double* fresh, double* rates, double* change, 
     largest = hn::Max(largest, size_of(x));
     hn::StoreU(x, d, rates + k);
   }
-  *change = largest_of(most);
-  *size = largest_of(largest);
+  *change = largest_of(d, most);
+  *size = largest_of(d, largest);
+}
+
+/// In vectors of `count` lanes or fewer: where no more are asked for, wider ones would do their work in vain.
+template <int count>
+void take_combined_of(const StageSums& s, const double* w, double* into, double* change, double* size) {
+  const hn::CappedTag<double, count> d;
+  using D = hn::CappedTag<double, count>;
+  auto most = hn::Zero(BitsOf<D>()), largest = most;
+  for (std::ptrdiff_t i = 0; i < count; i += static_cast<std::ptrdiff_t>(hn::MaxLanes(d))) {
+    const Rows<stages, D> rows(w + i);
+    for (std::ptrdiff_t m = 0; m < s.n; ++m) {
+      const auto sum = rows.sum(s.rates + stages * m);
+      double* const at = into + stages * m + i;
+      most = hn::Max(most, size_of(d, hn::Sub(sum, hn::LoadU(d, at))));
+      largest = hn::Max(largest, size_of(d, sum));
+      hn::StoreU(sum, d, at);
+    }
+  }
+  *change = largest_of(d, most);
+  *size = largest_of(d, largest);
+}
+void take_combined(const StageSums& sums, const double* w, double* into, double* change, double* size) {
+  const StageSums s = sums;
+  s.terms <= 4 ? take_combined_of<4>(s, w, into, change, size) : take_combined_of<8>(s, w, into, change, size);
 }
 
 #if HWY_TARGET == HWY_SCALAR
@@ -252,7 +289,7 @@ void finish(const StepSums& sums) {
 }  // namespace
 
 extern const CollocationKernels collocation_kernels;
-const CollocationKernels collocation_kernels{values, positions, extrapolation, combine,
-                                             moved,  take,      coefficient,   finish};
+const CollocationKernels collocation_kernels{values, positions,     extrapolation, combine, moved,
+                                             take,   take_combined, coefficient,   finish};
 
 }  // namespace noether::NOETHER_SIMD_LEVEL

@@ -15,6 +15,7 @@ struct StageSums {
   const double* rates;  ///< F
   const double *y, *low;
   double h, h2, h2_low;  ///< h^2, and what rounding takes from it: the same at every step, it would be a drift
+  int terms = 8;         ///< that count, 4 or 8; the other rates are 0
 };
 
 /// What a step adds to n variables. `weights`, `weights_low`, `twice`, `twice_low`: shape (8).
@@ -42,6 +43,8 @@ struct CollocationKernels {
   std::uint8_t (*moved)(std::ptrdiff_t n, const double* q, double* known);
   /// Rates of n variables become `fresh`; the largest change, and the largest |fresh|: not a number if one is none.
   void (*take)(std::ptrdiff_t n, const double* fresh, double* rates, double* change, double* size);
+  /// into_i <- sum_j w_ji F_j for i < terms, and as `take` their largest change and size
+  void (*take_combined)(const StageSums& sums, const double* w, double* into, double* change, double* size);
   /// sum_j w_j F_j and max_j |F_j| of each variable, shape (n), all shapes rounded up to a multiple of eight.
   void (*coefficient)(std::ptrdiff_t n, const double* rates, const double* w, double* sum, double* largest);
   /// q += h v + h^2 sum twice_j F_j, v += h sum weights_j F_j, with their rounding errors

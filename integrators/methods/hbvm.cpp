@@ -54,7 +54,7 @@ template <class Real> void Hbvm<Real>::bind(const VectorField<Real>& f) {
   for (auto* all : {&g_, &fresh_, &part_, &q_, &v_, &previous_}) all->assign(lane_count * padded, Real(0));
   low_.assign(static_cast<std::size_t>(f.size()), Real(0));
   state_.resize(f.size());
-  sums_ = {n_};
+  sums_ = {n_, coefficients_};
   h_ = ahead_ratio_ = 0;
   swept_ = true;
   system_.reset();
@@ -164,12 +164,23 @@ template <class Real> void Hbvm<Real>::evaluate(const Place& at) {
   if (kept_.any()) kept_.correct(fresh_.data());
 }
 
-/// Takes the fresh coefficients. @return their largest change and size; of the half, q or v, that has changed most
-template <class Real> std::array<Real, 2> Hbvm<Real>::take() {
-  if (!two_kinds_) return sums_.take(fresh_.data(), g_.data());
-  const StageArithmetic<Real> half{n_ / 2};
-  const auto q = half.take(fresh_.data(), g_.data());
-  const auto v = half.take(fresh_.data() + lane_count * half.n, g_.data() + lane_count * half.n);
+/// Goes on to the coefficients of the rates along the path. @return their largest change and size; of the half, q or v,
+/// that has changed most
+template <class Real> std::array<Real, 2> Hbvm<Real>::take(const Place& at) {
+  const bool at_once = table_->eights.size() == 1 && !kept_.any();
+  if (at_once) {
+    at_nodes_[0] = rates_at(at, 0);
+  } else {
+    evaluate(at);
+  }
+  const auto of = [&](const StageArithmetic<Real>& sums, Index begin) {
+    Real* const into = g_.data() + lane_count * begin;
+    if (!at_once) return sums.take(fresh_.data() + lane_count * begin, into);
+    return sums.take_combined(at_nodes_[0] + lane_count * begin, table_->eights[0].onto, into);
+  };
+  if (!two_kinds_) return of(sums_, 0);
+  const StageArithmetic<Real> half{n_ / 2, coefficients_};
+  const auto q = of(half, 0), v = of(half, half.n);
   return !(q[0] * v[1] <= v[0] * q[1]) ? q : v;
 }
 
@@ -182,8 +193,7 @@ template <class Real> bool Hbvm<Real>::sweep(const Place& at) {
   double before = std::numeric_limits<double>::infinity();
   int stalled = 0;
   for (int round = 1; round <= most; ++round) {
-    evaluate(at);
-    const auto [change, size] = take();
+    const auto [change, size] = take(at);
     if (!isfinite(size + change)) return false;
     const double relative = size > Real(0) ? static_cast<double>(change / size) : change > Real(0) ? 1.0 : 0.0;
     const double shrinks = round == 1 ? 1.0 : relative / before;

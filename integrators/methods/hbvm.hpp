@@ -72,7 +72,7 @@ template <class Real> class Hbvm final : public Method<Real> {
   bool sweep(const Place& at);
   bool iterate(const Place& at);
   void evaluate(const Place& at);
-  std::array<Real, 2> take();
+  std::array<Real, 2> take(const Place& at);
   const Real* rates_at(const Place& at, std::size_t eight);
   void form_states(const Place& at, std::size_t eight, Real* q);
   void add_update();

@@ -32,7 +32,7 @@ template <class Real>
 void StageArithmetic<Real>::values(const Real* rates, const StageMatrix<Real>& a, const Real* y, const Real* low,
                                    double h, Real* out) const {
   if constexpr (std::is_same_v<Real, double>) {
-    collocation_kernels().values({n, rates, y, low, h, 0, 0}, a[0].data(), out);
+    collocation_kernels().values({n, rates, y, low, h, 0, 0, terms}, a[0].data(), out);
   } else {
     for (Index m = 0; m < n; ++m) {
       const StageLanes<Real> sum = product(a, rates + lane_count * m);
@@ -49,8 +49,8 @@ void StageArithmetic<Real>::positions(const Real* rates, const StageMatrix<Real>
                                       double h, Real* out) const {
   if constexpr (std::is_same_v<Real, double>) {
     const DoubleDouble h2 = DoubleDouble::product(h, h);
-    collocation_kernels().positions({n, rates, y, low, h, h2.high, h2.low}, a[0].data(), c.data(), c_low.data(), v,
-                                    out);
+    collocation_kernels().positions({n, rates, y, low, h, h2.high, h2.low, terms}, a[0].data(), c.data(), c_low.data(),
+                                    v, out);
   } else {
     for (Index m = 0; m < n; ++m) {
       const StageLanes<Real> sum = product(a, rates + lane_count * m);
@@ -118,6 +118,29 @@ template <class Real> std::array<Real, 2> StageArithmetic<Real>::take(const Real
       if (!(change <= most[0])) most[0] = change;
       if (!(size <= most[1])) most[1] = size;
       rates[k] = fresh[k];
+    }
+  }
+  return most;
+}
+
+template <class Real>
+std::array<Real, 2> StageArithmetic<Real>::take_combined(const Real* rates, const StageMatrix<Real>& w,
+                                                         Real* into) const {
+  std::array<Real, 2> most{Real(0), Real(0)};
+  if constexpr (std::is_same_v<Real, double>) {
+    collocation_kernels().take_combined({n, rates, nullptr, nullptr, 0, 0, 0, terms}, w[0].data(), into, &most[0],
+                                        &most[1]);
+  } else {
+    using std::abs;
+    for (Index m = 0; m < n; ++m) {
+      const StageLanes<Real> sum = product(w, rates + lane_count * m);
+      for (std::size_t i = 0; i < static_cast<std::size_t>(terms); ++i) {
+        Real& at = into[lane_count * m + static_cast<Index>(i)];
+        const Real change = abs(sum[i] - at), size = abs(sum[i]);
+        if (!(change <= most[0])) most[0] = change;
+        if (!(size <= most[1])) most[1] = size;
+        at = sum[i];
+      }
     }
   }
   return most;

@@ -17,6 +17,7 @@ template <class Real> using StageMatrix = std::array<StageLanes<Real>, lane_coun
 /// Rates, and what is found for each variable, are padded to a multiple of eight variables.
 template <class Real> struct StageArithmetic {
   Index n = 0;
+  int terms = lane_count;  ///< rates that paths are made of; the others are 0
 
   /// out_i = y + (h sum_j a_ji F_j + low)
   void values(const Real* rates, const StageMatrix<Real>& a, const Real* y, const Real* low, double h, Real* out) const;
@@ -33,6 +34,8 @@ template <class Real> struct StageArithmetic {
   std::uint8_t moved(const Real* q, Real* known) const;
   /// Rates become `fresh`; the largest change, and the largest |fresh|.
   std::array<Real, 2> take(const Real* fresh, Real* rates) const;
+  /// into_i becomes sum_j w_ji F_j for i < terms, other w being 0; the largest change, and the largest |into|.
+  std::array<Real, 2> take_combined(const Real* rates, const StageMatrix<Real>& w, Real* into) const;
   /// sum_j w_j F_j, and largest |F_j|, of each variable.
   void coefficient(const Real* rates, const StageLanes<Real>& w, Real* sum, Real* largest) const;
   /// Ends a step: velocities (or variables) from weights 0 and 1 (what rounding took), positions, if there are any,

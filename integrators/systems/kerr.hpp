@@ -2,7 +2,7 @@
 /// The free fall of a test body about a black hole that turns.
 
 #include "engine/description.hpp"
-#include "integrators/vector_field.hpp"
+#include "integrators/named_invariant.hpp"
 
 #include <cmath>
 #include <string>
@@ -66,6 +66,8 @@ struct Kerr {
     return {0, r, theta, 0, (-linear + std::sqrt(linear * linear - square * constant)) / square, p_r, p_theta, L};
   }
   std::vector<std::string> names() const { return {"t", "r", "theta", "phi", "p_t", "p_r", "p_theta", "p_phi"}; }
+  /// "carter"; p_t and p_phi, whose rates are 0, every method keeps.
+  std::vector<NamedInvariant> invariants() const;
 
   template <class Real> Real value(const Real& /*tau*/, const Vector<Real>& q, const Vector<Real>& p) const {
     using std::cos, std::sin;
@@ -75,5 +77,19 @@ struct Kerr {
     return (D * p[1] * p[1] + p[2] * p[2] + about * about - along * along / D) / (Real(2) * S);
   }
 };
+
+/// Carter's constant of a body of any mass, whose square is -2 H.
+struct CarterConstant {
+  Kerr hole;
+
+  template <class Real> Real operator()(const Vector<Real>& q, const Vector<Real>& p) const {
+    using std::cos, std::sin;
+    const Real sine = sin(q[2]), cosine = cos(q[2]), turn = p[3] / sine;
+    const Real square = -Real(2) * hole.value(Real(0), q, p) - p[0] * p[0];
+    return p[2] * p[2] + cosine * cosine * (Real(hole.a * hole.a) * square + turn * turn);
+  }
+};
+
+inline std::vector<NamedInvariant> Kerr::invariants() const { return {invariant("carter", CarterConstant{*this})}; }
 
 }  // namespace noether
