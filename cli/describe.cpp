@@ -201,7 +201,7 @@ void describe_method(const MethodInfo& info, bool json) {
     fmt::print("  {} {} per step of given length\n", info.evaluations,
                info.evaluations == 1 ? "evaluation" : "evaluations");
   }
-  if (work) fmt::print("  {}\n", group_work_text(*work));
+  if (work) fmt::print("  {}{}\n", group_work_text(*work), dexp_text(info, {}));
   if (std::isinf(info.stability_limit)) {
     fmt::print("  stable on the oscillator at any step\n");
   } else if (info.stability_limit == 0) {

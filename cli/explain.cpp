@@ -47,6 +47,8 @@ struct Explanation {
   Index variables = 0;                          ///< of a system without particles
   std::optional<NeighborStatistics> neighbors;  ///< of the first step
   std::string kept;                             ///< of energy, momentum and angular momentum
+  std::string shadow;                           ///< whether it can be watched, of bodies and systems with an energy
+  int jacobians = 0;                            ///< of the forces in one step
   std::string small_box;                        ///< what is done where it is smaller than twice the range
   std::optional<Stiffness> stiffness;           ///< at the start
   std::optional<StiffnessAlong> along;          ///< of a system whose run has an end
@@ -229,11 +231,14 @@ void count_evaluations(const Scene& scene, Explanation& e) {
     if (sim.run(before).step < before) return;
     known = sim.evaluations().force;
   }
+  const auto in_a_step = [&](std::int64_t count) {
+    return static_cast<int>(std::lround(static_cast<double>(count) / static_cast<double>(steps)));
+  };
   const std::int64_t made = sim.run(steps).step - before;
   if (made < steps) return;  // a step that fails is made again and again: the word alone tells
   const int by_word = e.evaluations;
-  e.evaluations =
-      static_cast<int>(std::lround(static_cast<double>(sim.evaluations().force - known) / static_cast<double>(made)));
+  e.evaluations = in_a_step(sim.evaluations().force - known);
+  e.jacobians = in_a_step(sim.evaluations().jacobian);
   if (e.behind_kicks > 0 && e.evaluations == by_word - e.behind_kicks) e.of_kernel['G'] -= e.behind_kicks;
 }
 
@@ -277,6 +282,7 @@ Explanation explained(const Scene& scene) {
   e.kepler = kepler_steps(scene);
   e.small_box = small_box_of(scene);
   e.kept = kept_text(scene, integrator.claims());
+  e.shadow = shadow_text(scene, integrator);
   measure_neighbors(integrator, s, e);
   return e;
 }
@@ -372,11 +378,13 @@ void print_cost(const Scene& scene, const Explanation& e) {
     fmt::print("  before the first and for every look: {} of the corrector\n", counted(e.corrector, "flow"));
   if (!scene.integrator.classical) return;
   const bool group = scene.system ? scene.system->field()->on_group() != nullptr : has_bodies(scene.particles);
-  const MethodInfo& info = *scene.integrator.classical->info;
-  if (group && info.group_work != nullptr)
-    fmt::print("  {}\n", group_work_text(info.group_work(info, scene.integrator.classical->options)));
-  fmt::print("  {} of {}, on the average of the first steps\n", counted(e.evaluations, "evaluation"),
-             scene.system ? "all rates" : "all forces together");
+  const auto& [info, options] = *scene.integrator.classical;
+  if (group && info->group_work != nullptr) {
+    fmt::print("  {}{}\n", group_work_text(info->group_work(*info, options)), dexp_text(*info, options));
+  }
+  fmt::print("  {} of {}{}, on the average of the first steps\n", counted(e.evaluations, "evaluation"),
+             scene.system ? "all rates" : "all forces together",
+             e.jacobians > 0 ? fmt::format(" and {} of their Jacobian", e.jacobians) : "");
 }
 
 /// The parts that are left out, each in a line, or how many of each kind.
@@ -426,6 +434,7 @@ void print_text(const Scene& scene, const Explanation& e, bool all) {
         force.name);
   }
   if (!e.kept.empty()) fmt::print("{}\n", e.kept);
+  if (!e.shadow.empty()) fmt::print("{}\n", e.shadow);
   if (!e.small_box.empty()) fmt::print("{}\n", e.small_box);
   if (const std::string epoch = epoch_of(scene.effective); !epoch.empty()) {
     const double start = scene.integrator.start;
@@ -486,6 +495,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
        {"constraints", std::int64_t{e.constraints}},
        {"flows_per_step", Json::object(flows)},
        {"force_evaluations_per_step", e.evaluations},
+       {"jacobians_per_step", e.jacobians},
        {"simd", std::string(name(simd_level()))},
        {"step", scene.integrator.step},
        {"epoch", epoch.empty() ? Json() : Json(epoch)},

@@ -1,10 +1,13 @@
 #include "cli/explain_kept.hpp"
 
+#include "engine/bodies.hpp"
+#include "engine/check_wanted.hpp"
 #include "integrators/method.hpp"
 
 #include <fmt/format.h>
 
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace noether {
@@ -43,6 +46,15 @@ std::string kept_text(const Scene& scene, const IntegratorClaims& claims) {
   tell("L", claims.keeps_angular_momentum, &ForceClaims::keeps_angular_momentum, method.keeps_angular_momentum, true);
   const std::string all = kept.size() == 3 ? "E, p and L" : fmt::format("{}", fmt::join(kept, " and "));
   return fmt::format("keeps {}{}{}", all, lost.empty() ? "" : "; ", fmt::join(lost, "; "));
+}
+
+std::string shadow_text(const Scene& scene, const AnyIntegrator<double>& integrator) {
+  const IntegratorClaims claims = integrator.claims();
+  if (!claims.energy || !(scene.system || has_bodies(scene.particles))) return "";
+  constexpr std::string_view monitor = "shadow_hamiltonian";
+  const std::string why = detail::why_no_action(claims, integrator.has_action());
+  return why.empty() ? fmt::format("monitor '{}' can watch: every step has its action", monitor)
+                     : fmt::format("monitor '{}' cannot watch: {}", monitor, why);
 }
 
 }  // namespace noether

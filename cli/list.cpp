@@ -10,6 +10,7 @@
 #include "scene/json.hpp"
 #include "scene/parts.hpp"
 #include "scene/read_builder.hpp"
+#include "study/frame_traits.hpp"
 #include "study/methods_page.hpp"
 #include "study/turning_traits.hpp"
 
@@ -187,9 +188,10 @@ Json traits_json(const MethodTraits& traits) {
 void print_measured(bool json) {
   std::vector<MeasuredMethod> methods_measured;
   for (const KnownMethod& known : all_known_methods()) methods_measured.push_back(measured_method(known));
+  const std::vector<MeasuredFrames> frames = measured_frames();
   const std::vector<MeasuredTurns> turns = measured_turns();
   if (!json) {
-    fmt::print("{}{}", methods_page(methods_measured), turning_section(turns));
+    fmt::print("{}{}{}", methods_page(methods_measured), frames_section(frames), turning_section(turns));
     return;
   }
   std::vector<Json> items;
@@ -200,6 +202,18 @@ void print_measured(bool json) {
                                   {"measured", traits_json(method.measured)},
                                   {"claimed", traits_json(method.claimed)},
                                   {"differences", Json::list_of(method.differences())}}));
+  }
+  std::vector<Json> rotating;
+  for (const MeasuredFrames& one : frames) {
+    rotating.push_back(Json::object({{"method", one.method},
+                                     {"order", one.order},
+                                     {"claimed_order", one.claimed_order},
+                                     {"evaluations", one.evaluations},
+                                     {"exponentials", one.work.exponentials},
+                                     {"commutators", one.work.commutators},
+                                     {"reversible", one.reversible},
+                                     {"defect", one.defect},
+                                     {"error", one.error}}));
   }
   std::vector<Json> turning;
   for (const MeasuredTurns& one : turns) {
@@ -213,6 +227,7 @@ void print_measured(bool json) {
   fmt::print("{}\n", Json::object({{"schema", "noether.list/1"},
                                    {"list", "methods"},
                                    {"items", Json::list(items)},
+                                   {"frames", Json::list(rotating)},
                                    {"turns", Json::list(turning)}})
                          .text());
 }

@@ -1,5 +1,6 @@
 #include "cli/method_text.hpp"
 
+#include "integrators/lie/rkmk.hpp"
 #include "numbers/text.hpp"
 
 #include <fmt/format.h>
@@ -33,6 +34,11 @@ std::string group_work_text(const GroupWork& work) {
   if (work.least_commutators >= 0 && work.least_commutators < work.commutators)
     text += fmt::format("; commutators could be reduced to {}", work.least_commutators);
   return text;
+}
+
+std::string dexp_text(const MethodInfo& info, const MethodOptions& options) {
+  const int terms = dexp_terms_of(info, options);
+  return terms < 0 ? "" : fmt::format("; {} in dexp^-1 of a stage", counted(terms, "nested commutator"));
 }
 
 Json group_work_json(const GroupWork& work) {

@@ -20,6 +20,8 @@ std::string evaluations_text(const MethodInfo& info);
 /// What a step takes on a Lie group, as it is counted: "4 evaluations, 4 exponentials and 6 commutators a step on a
 /// group; commutators could be reduced to 2".
 std::string group_work_text(const GroupWork& work);
+/// "; 2 nested commutators in dexp^-1 of a stage"; empty for methods of other kinds than Munthe-Kaas's.
+std::string dexp_text(const MethodInfo& info, const MethodOptions& options);
 /// The same for machines.
 Json group_work_json(const GroupWork& work);
 

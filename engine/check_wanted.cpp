@@ -6,6 +6,17 @@
 
 namespace noether::detail {
 
+std::string why_no_action(const IntegratorClaims& claims, bool has_action) {
+  if (claims.clock == ClockMode::free) return fmt::format("method '{}' takes steps of varying length", claims.method);
+  if (!claims.no_action.empty()) return std::string(claims.no_action);
+  if (claims.dissipative) return "a force of this run is dissipative, so its motion has no action";
+  if (claims.time_dependent)
+    return "a force of this run depends on time, so no energy is conserved, not even the exact one";
+  if (has_action) return "";
+  return fmt::format("method '{}' does not compute it{}", claims.method,
+                     claims.symplectic ? "" : "; it is not symplectic");
+}
+
 void check_wanted(const std::string& monitor, const Request& wanted, const IntegratorClaims& claims, const Told& told) {
   if (wanted.energy && !claims.energy) {
     throw Error(fmt::format("monitor '{}' needs the energy, but a force of this run does not compute one", monitor));
@@ -21,14 +32,7 @@ void check_wanted(const std::string& monitor, const Request& wanted, const Integ
   const auto refuse = [&](const std::string& why) {
     throw Error(fmt::format("monitor '{}' needs the action of every step: {}", monitor, why));
   };
-  if (claims.clock == ClockMode::free) refuse(fmt::format("method '{}' takes steps of varying length", claims.method));
-  if (!claims.no_action.empty()) refuse(std::string(claims.no_action));
-  if (claims.dissipative) refuse("a force of this run is dissipative, so its motion has no action");
-  if (claims.time_dependent)
-    refuse("a force of this run depends on time, so no energy is conserved, not even the exact one");
-  if (!told.action)
-    refuse(fmt::format("method '{}' does not compute it{}", claims.method,
-                       claims.symplectic ? "" : "; it is not symplectic"));
+  if (const std::string why = why_no_action(claims, told.action); !why.empty()) refuse(why);
   if (!told.by_steps) refuse("attach it by steps, not by wall time");
 }
 

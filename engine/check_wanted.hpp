@@ -13,6 +13,9 @@ struct Told {
   bool by_steps = false;  ///< the monitor looks by steps
 };
 
+/// Why no action tells the steps of a run; empty where one does.
+std::string why_no_action(const IntegratorClaims& claims, bool has_action);
+
 /// @throws Error  naming the monitor and what the run has not
 void check_wanted(const std::string& monitor, const Request& wanted, const IntegratorClaims& claims, const Told& told);
 

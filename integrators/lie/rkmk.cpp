@@ -160,16 +160,17 @@ namespace methods {
 
 namespace {
 
-const tableaus::NamedTableau& table_under(const MethodInfo& info) {
+/// The table under a method of Munthe-Kaas; null where it is none.
+const tableaus::NamedTableau* table_under(const MethodInfo& info) {
   for (const tableaus::NamedTableau& table : tableaus::all_explicit()) {
-    if (info.name.substr(5) == table.name) return table;  // behind "rkmk_"
+    if (info.name == "rkmk_" + std::string(table.name)) return &table;
   }
-  throw LogicError("there is no table of '" + std::string(info.name) + "'");
+  return nullptr;
 }
 
 /// @throws Error  for fewer brackets than the order needs
 template <class Real> std::unique_ptr<Method<Real>> rkmk(const MethodInfo& info, const MethodOptions& options) {
-  const tableaus::NamedTableau& table = table_under(info);
+  const tableaus::NamedTableau& table = *table_under(info);
   const int order = table.table().order, needed = dexp_terms_for(order);
   const std::int64_t terms = options.own.as<RkmkOptions>().dexp_terms.value_or(needed);
   const auto refuse = [&](const std::string& why) { refuse_field("dexp_terms", std::to_string(terms), why); };
@@ -219,5 +220,11 @@ std::span<const MethodInfo> rkmk_list() {
 }
 
 }  // namespace methods
+
+int dexp_terms_of(const MethodInfo& info, const MethodOptions& options) {
+  const tableaus::NamedTableau* table = methods::table_under(info);
+  if (table == nullptr) return -1;
+  return static_cast<int>(options.own.as<RkmkOptions>().dexp_terms.value_or(dexp_terms_for(table->table().order)));
+}
 
 }  // namespace noether

@@ -61,4 +61,8 @@ template <class Real> class Rkmk final : public Method<Real> {
 extern template class Rkmk<double>;
 extern template class Rkmk<Quad>;
 
+/// Nested commutators in dexp^-1 of a stage, as the options have them or the order needs; -1 for methods of other
+/// kinds.
+int dexp_terms_of(const MethodInfo& info, const MethodOptions& options);
+
 }  // namespace noether

@@ -40,10 +40,15 @@ struct TurningFrame : RotationMatrix<3> {
     A(1, 2) = -Real(drive) * cos(angle);
   }
   /// The solution that begins at the unit matrix.
+  template <class Real> Mat3<Real> turned(const Real& t) const {
+    const Real none(0);
+    const Quaternion<Real> about = rotation_by<Real>(Vec3<Real>(none, none, Real(frequency) * t)),
+                           within = rotation_by<Real>(
+                               Vec3<Real>(Real(drive) * t, none, (Real(rate) - Real(frequency)) * t));
+    return rotation_matrix<Real>(quaternion_product<Real>(about, within));
+  }
   std::vector<double> exact(double t) const {
-    const Quaternion<double> about = rotation_by<double>(Vec3<double>(0, 0, frequency * t)),
-                             within = rotation_by<double>(Vec3<double>(drive * t, 0, (rate - frequency) * t));
-    const Mat3<double> y = rotation_matrix<double>(quaternion_product<double>(about, within));
+    const Mat3<double> y = turned<double>(t);
     std::vector<double> all;
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) all.push_back(y(i, k));

@@ -29,11 +29,15 @@ template <class Real> double size_of(const Vector<Real>& d) {
   return largest;
 }
 
+/// What the smallest numbers of all are rounded to; among them no update is small beside a velocity.
+constexpr double smallest_rounding = 64 * std::numeric_limits<double>::denorm_min();
+
 /// Whether rounding of each component of p is all that is left of it.
 template <class Real> bool is_rounding(const Vector<Real>& left, const Vector<Real>& p) {
   const double most = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
   for (Index i = 0; i < p.size(); ++i) {
-    if (!(std::abs(static_cast<double>(left[i])) <= most * std::abs(static_cast<double>(p[i])))) return false;
+    const double rounding = most * std::abs(static_cast<double>(p[i])) + smallest_rounding;
+    if (!(std::abs(static_cast<double>(left[i])) <= rounding)) return false;
   }
   return true;
 }
@@ -91,7 +95,7 @@ std::optional<Failure> LagrangianField<Real>::velocity(const Real& t, const Vect
     if (!corrected) break;
     const double change = size_of(update_), size = size_of(v);
     if (change == 0 || is_rounding(off_, p)) return {};
-    if (change <= 64 * rounding * size && !(change < 0.5 * before)) return {};
+    if (change <= 64 * rounding * size + smallest_rounding && !(change < 0.5 * before)) return {};
     if (!std::isfinite(change)) break;
     renew = !(change < 0.01 * before);  // else the same matrix does what is left
     before = change;

@@ -97,6 +97,72 @@ type = "checkpoint"
 steps = 20
 )";
 
+/// Watchers of a run of 4000 steps: frames every 20 steps, checkpoints every 40.
+const std::string watchers = R"([[every]]
+type = "energy"
+steps = 7
+[[every]]
+type = "trajectory"
+steps = 20
+[[every]]
+type = "checkpoint"
+steps = 40
+)";
+
+/// A heavy top on its group.
+const std::string top_run = R"(units = "reduced"
+[[particles.rigid_body]]
+name = "top"
+mass = 1
+inertia = [2, 1, 0.75]
+fixed_point = [0, 0, 0]
+center = [0.2, 0.3, 0.5]
+spin = [0.6, -0.4, 0.9]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "uniform_field"
+acceleration = [0, 0, -1]
+[integrator]
+method = "rkmk_rk4"
+step = 0.05
+steps = 4000
+)" + watchers;
+
+/// A double pendulum by its action, which magnifies any other bit; its shadow has a past.
+const std::string action_run = R"(units = "reduced"
+[system]
+type = "double_pendulum"
+[integrator]
+method = "galerkin_gauss_2"
+step = 0.01
+steps = 4000
+[[every]]
+type = "shadow_hamiltonian"
+steps = 1
+)" + watchers;
+
+/// A block that tumbles, exact in its energy.
+const std::string block_run = R"(units = "reduced"
+[particles]
+type = "block"
+cells = [2, 2, 2]
+size = [1, 1, 1]
+density = 1
+stretch = [1.2, 0.9, 1.05]
+angular_velocity = [1, 0.3, 2]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "hyperelastic"
+lambda = 1
+mu = 0.8
+[integrator]
+method = "simo_tarnow_wong"
+step = 0.1
+steps = 400
+)" + watchers;
+
 /// Two bodies by a method with steps of its own, from another time than 0; frames and samples at times of lists.
 std::string listed_run() {
   std::string frames, samples;
@@ -196,12 +262,18 @@ TEST_CASE("a projected run killed at moments from start to end ends, resumed, as
   die_at_moments(projected_run(), 20, 8);
 }
 
+TEST_CASE("runs on groups, by an action and of a block, killed at moments from start to end, end as ones never killed",
+          "[cli][resume][kill][lie][variational][slow]") {
+  for (const std::string& scene : {top_run, action_run, block_run}) die_at_moments(scene, 20, 4);
+}
+
 TEST_CASE("so they do for hundreds of deaths", "[cli][resume][kill][.][nightly]") {
   die_at_moments(small_run, 20, 400);
   die_at_moments(large_run, 2, 150);
   die_at_moments(chaotic_system, 20, 200);
   die_at_moments(stiff_system, 0, 200);
   die_at_moments(listed_run(), 0, 200);
+  for (const std::string& scene : {top_run, action_run, block_run}) die_at_moments(scene, 20, 100);
 }
 
 }  // namespace

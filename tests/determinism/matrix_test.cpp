@@ -1,7 +1,6 @@
 /// Threads x cadence x program or scene x restart, for schemes, Hamiltonians and forces, at every SIMD level.
 
 #include "engine/bodies.hpp"
-#include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/lennard_jones.hpp"
@@ -17,17 +16,13 @@
 #include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
 #include "integrators/wisdom_holman.hpp"
-#include "io/digest.hpp"
-#include "monitors/monitors.hpp"
-#include "numbers/simd.hpp"
-#include "scene/scene.hpp"
+#include "tests/determinism/twins.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/energy_projection.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/mesh_field.hpp"
 #include "tests/support/planets.hpp"
-#include "tests/support/settings.hpp"
 #include "tests/support/tops.hpp"
 
 #include <fmt/format.h>
@@ -40,119 +35,7 @@
 namespace noether {
 namespace {
 
-constexpr std::int64_t steps = 5;
-
-/// One run, as a program makes it and as a scene does.
-struct Twin {
-  std::string name;
-  ParticleSystem<double> bodies;
-  AnyIntegrator<double> program;
-  double step;
-  std::string hamiltonian;  ///< of the scene
-  std::string method;
-  std::string place = {};       ///< where the scene's particles are, if not in open space
-  std::string decorators = {};  ///< of the scene
-  CompositionOptions options = {};
-};
-
-/// One way to make the run.
-struct Way {
-  int threads = 1;
-  std::int64_t cadence = 0;
-  bool from_scene = false;
-  bool restarted = false;
-};
-
-/// Those of noether, and some from outside.
-Parts parts() {
-  Parts all = standard_parts();
-  all.add_decorator<test::EnergyProjection>();
-  all.add_hamiltonian<test::Tops>();
-  all.add_force<test::MeshField>();
-  return all;
-}
-
-/// As a scene has them.
-std::string keys_of(const CompositionOptions& options) {
-  std::string kernel;
-  for (const auto& [value, name] : EnumNames<StepKernel>::values) kernel = value == options.kernel ? name : kernel;
-  return fmt::format("compensated={}\ncorrector={}\nkernel='{}'\nsecond_corrector={}\n", options.compensated,
-                     options.corrector, kernel, options.second_corrector);
-}
-
-Simulation<double> simulation_of(const Twin& twin, const Way& way) {
-  const std::string watch = way.cadence > 0 ? fmt::format("[[every]]\ntype='energy'\nsteps={0}\n", way.cadence) : "";
-  const auto from_scene = [&] {
-    Scene scene = read_scene(fmt::format("units='reduced'\n{}[[particles.body]]\nname='replaced'\nmass=1\nx=[0,0,0]\n"
-                                         "v=[0,0,0]\n{}[integrator]\nmethod='{}'\nstep={}\nsteps={}\n{}{}{}",
-                                         twin.place, twin.hamiltonian, twin.method, twin.step, steps,
-                                         keys_of(twin.options), twin.decorators, watch),
-                             "scene.toml", parts());
-    scene.particles = twin.bodies;
-    return assemble(scene);
-  };
-  if (way.from_scene) return from_scene();
-  Simulation<double> simulation(twin.bodies, twin.program, twin.step);
-  if (way.cadence > 0) simulation.every(way.cadence, Energy{});
-  return simulation;
-}
-
-/// The digest of the first words, and after it second ones where they are digits of the state.
-std::string bits_of(Simulation<double>& simulation, bool second_words) {
-  const ParticleSystem<double>& s = simulation.particles();
-  std::string bits = io::digest(s);
-  if (!second_words) return bits;
-  REQUIRE(s.low_words() != nullptr);
-  for (const VectorColumn<double>* column : {&s.low_words()->x, &s.low_words()->v}) {
-    for (Index i = 0; i < s.size(); ++i) {
-      for (int k = 0; k < 3; ++k) bits += fmt::format(" {:a}", column->component(k)[i]);
-    }
-  }
-  return bits;
-}
-
-std::string digest_of(const Twin& twin, const Way& way) {
-  const bool second_words = twin.program.claims().second_words;
-  const test::Threads threads(way.threads);
-  Simulation<double> whole = simulation_of(twin, way);
-  if (!way.restarted) {
-    REQUIRE(whole.run(steps).ok());
-    return bits_of(whole, second_words);
-  }
-  REQUIRE(whole.run(2).ok());
-  Simulation<double> again = simulation_of(twin, way);
-  again.restore(whole.save());
-  REQUIRE(again.run(steps - 2).ok());
-  return bits_of(again, second_words);
-}
-
-/// Every way there is: 96.
-std::vector<Way> all_ways() {
-  std::vector<Way> ways;
-  for (int threads = 1; threads <= 8; ++threads) {
-    for (const std::int64_t cadence : {0, 1, 3}) {
-      for (const bool from_scene : {false, true}) {
-        for (const bool restarted : {false, true}) ways.push_back({threads, cadence, from_scene, restarted});
-      }
-    }
-  }
-  return ways;
-}
-
-/// Goes every so manieth way at every SIMD level; at one level all of them end in the same bits.
-void check_ways(const Twin& twin, std::size_t stride) {
-  const std::vector<Way> ways = all_ways();
-  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
-    if (!has_simd_level(level)) continue;
-    const test::AtLevel at(level);
-    const std::string expected = digest_of(twin, {});
-    for (std::size_t k = 0; k < ways.size(); k += stride) {
-      const Way& way = ways[k];
-      CAPTURE(twin.name, name(level), way.threads, way.cadence, way.from_scene, way.restarted);
-      CHECK(digest_of(twin, way) == expected);
-    }
-  }
-}
+using test::check_ways, test::Twin;
 
 const std::string soft_scene =
     "[hamiltonian]\ntype='kinetic_potential'\nG=1\n[[hamiltonian.force]]\ntype='gravity'\nsoftening=0.05\n";
@@ -368,7 +251,7 @@ std::vector<Twin> two_word_twins() {
 /// Methods exact in energy, which serve neither tracers, all of them, nor forces that depend on time.
 std::vector<Twin> exact_energy_twins() {
   std::vector<Twin> twins;
-  for (const char* name : {"simo_tarnow_wong", "gonzalez", "itoh_abe_symmetric"}) {
+  for (const char* name : {"simo_tarnow_wong", "gonzalez", "itoh_abe_symmetric", "avf_4", "hbvm_4_2"}) {
     twins.push_back(
         {.name = name,
          .bodies = test::outer_planets(),

@@ -142,6 +142,15 @@ TEST_CASE("spins in axes of space keep that of a free body to the bit, on its co
     CHECK(std::abs(at(0.1) / error - 1) < 0.03);
     CHECK(std::abs(std::log2(at(0.1) / at(0.05)) - slope) < 0.06);
   }
+  for (const tableaus::NamedTableau& table : tableaus::all_explicit()) {
+    const std::string name = "rkmk_" + std::string(table.name);
+    CAPTURE(name);
+    MethodOptions options{.spin_axes = SpinAxes::space};
+    if (methods::find(name)->adaptive) options.adaptive = false;
+    Simulation sim(test::free_body(), lie(ForceField<double>{}, method(name, options)), 0.1);
+    REQUIRE(sim.run(1000).ok());
+    CHECK(std::abs(test::in_body_of(sim.particles()).norm() - 1) < 2e-15);
+  }
   // And J_z of a top, whose weight twists it about no vertical axis.
   Simulation sim(heavy_top(), on_group("rkmk_heun", {.spin_axes = SpinAxes::space}), 0.1);
   REQUIRE(sim.run(1000).ok());

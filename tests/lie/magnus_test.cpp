@@ -153,6 +153,24 @@ TEST_CASE("a user's top on SO(3) x R^3 has the errors of the reference", "[lie]"
   CHECK(run("commutator_free_4") < 3.3e-5);
 }
 
+TEST_CASE("pairs of methods choose the steps of a user's field on a group, to their tolerance", "[lie]") {
+  for (const char* name : {"rkmk_dormand_prince_5", "rkmk_cash_karp_5", "rkmk_dop853"}) {
+    double before = 1;
+    for (const double rtol : {1e-5, 1e-7, 1e-9}) {
+      CAPTURE(name, rtol);
+      Simulation sim(initial_state(UsersTop{}, {1, 0, 0, 0, 0.6, -0.4, 0.9}),
+                     lie(UsersTop{}, method(name, {.rtol = rtol, .atol = rtol / 100})));
+      REQUIRE(sim.run_until(10).ok());
+      const std::vector<double>& y = sim.particles().variables();
+      const double error = std::abs(y[4] - 0.22808129162272360413);
+      CHECK(error < 300 * rtol);
+      CHECK(error < before / 3);
+      CHECK(std::abs(y[0] * y[0] + y[1] * y[1] + y[2] * y[2] + y[3] * y[3] - 1) < 1e-15);
+      before = error;
+    }
+  }
+}
+
 TEST_CASE("a screw is followed exactly on SE(3), by steps of any length", "[lie]") {
   Simulation sim(initial_state(Screw{}, {1, 0, 0, 0, 0, 0, 0}), lie(Screw{}, method("rkmk_euler")), 0.5);
   REQUIRE(sim.run(4).ok());

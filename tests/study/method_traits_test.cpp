@@ -106,6 +106,7 @@ TEST_CASE("docs/methods.md has a row for every method and for nothing else, and 
     CHECK((known.scheme != nullptr ? !known.scheme->use.empty()
                                    : !(known.info->use.empty() && known.info->summary.empty())));
   }
+  for (const MethodInfo* info : methods::of_rotations()) names.emplace_back(info->name);
   std::sort(names.begin(), names.end());
   std::vector<std::string> rows;
   for (const auto& [name, cells] : rows_of_the_page()) rows.push_back(name);

@@ -72,6 +72,13 @@ TEST_CASE("momenta of any size have their velocity, and those that no velocity h
     REQUIRE(!fast.velocity(0, vector_of({0}), vector_of({p}), v));
     CHECK(std::abs(v[0] - p / std::sqrt(1 + p * p)) < 1e-15);
   }
+  for (const double mass : {1e-3, 1.0, 1e6}) {  // what is damped ends among the smallest numbers
+    LagrangianMotion<SimplePendulum, double> swing(SimplePendulum{.mass = mass});
+    for (const double p : {1e-300, 3.5e-308, 1.2e-309, -7e-314, 4.9e-324}) {
+      REQUIRE(!swing.velocity(0, vector_of({3.5e-308}), vector_of({p}), v));
+      CHECK(std::abs(v[0] - p / mass) <= 1e-15 * std::abs(p / mass) + 4e-322 / mass);
+    }
+  }
   LagrangianMotion<Motionless, double> none(Motionless{});
   const auto failure = none.velocity(0, vector_of({0.25}), vector_of({1}), v);
   REQUIRE(failure);
