@@ -280,7 +280,8 @@ MethodTraits claimed_traits(const KnownMethod& known) {
   traits.angular_momentum = claims.keeps_angular_momentum;
   // Of a regular orbit: near-by integrals exist for symplectic maps, and for reversible ones too.
   // Methods for gravity alone are Gauss's, but for errors far below those of their steps.
-  const bool nearly = known.info != nullptr && known.info->gravity_only;
+  // Tao's is symplectic in twice the dimensions, near the motion that is shown.
+  const bool nearly = known.info != nullptr && (known.info->gravity_only || known.info->name.starts_with("tao_"));
   const bool bounded = claims.symplectic || claims.reversible || nearly;
   traits.energy = claims.energy_exact ? EnergyError::kept : bounded ? EnergyError::bounded : EnergyError::drifts;
   const double limit = known.scheme != nullptr ? known.scheme->stability_limit : known.info->stability_limit;

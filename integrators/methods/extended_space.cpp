@@ -184,7 +184,7 @@ TaoMethod<Real>::TaoMethod(const MethodInfo& info, const MethodOptions& options)
       given_omega_(options.own.as<TaoOptions>().omega) {}
 
 template <class Real> MethodClaims TaoMethod<Real>::claims() const {
-  return {.name = name_, .order = order_, .reversible = true};
+  return {.name = name_, .order = order_};  // there and back the copies are no longer equal
 }
 
 template <class Real> void TaoMethod<Real>::bind(const VectorField<Real>& f) {
@@ -332,8 +332,7 @@ template <class Real>
 SemiexplicitMethod<Real>::SemiexplicitMethod(const MethodInfo& info, const MethodOptions& options)
     : name_(info.name),
       order_(info.order),
-      substeps_(substeps_of<Real>(info.name, info.order, options.own.as<SemiexplicitOptions>().composition)),
-      form_(options.jacobian) {}
+      substeps_(substeps_of<Real>(info.name, info.order, options.own.as<SemiexplicitOptions>().composition)) {}
 
 template <class Real> MethodClaims SemiexplicitMethod<Real>::claims() const {
   return {.name = name_, .order = order_, .symplectic = true, .reversible = true, .keeps_angular_momentum = true};
@@ -344,7 +343,7 @@ template <class Real> void SemiexplicitMethod<Real>::bind(const VectorField<Real
   twins_.resize(f.size());
   rate_.resize(f.size());
   multiplier_.setZero(f.size());
-  root_.bind(f.size(), form_);
+  root_.bind(f.size(), {});
 }
 
 template <class Real>
@@ -400,7 +399,7 @@ MethodInfo semiexplicit(std::string_view name, std::string_view summary, int ord
           .use = "symplectic steps of energies that no splitting divides, without derivatives of rates",
           .source = "JayawardanaOhsawa2023",
           .family = "extended space",
-          .options = {&own_options<SemiexplicitOptions>, linear_solver},
+          .options = {&own_options<SemiexplicitOptions>},
           .order = order,
           .make = make_semiexplicit<double>,
           .make_quad = make_semiexplicit<Quad>};

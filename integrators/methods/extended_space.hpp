@@ -131,7 +131,6 @@ template <class Real> class SemiexplicitMethod final : public Method<Real> {
   std::string_view name_;
   int order_;
   std::vector<Real> substeps_;
-  std::optional<JacobianForm> form_;
   TwinStates<Real> twins_;
   ContinuedRoot<Real> root_;
   Vector<Real> multiplier_, rate_;
