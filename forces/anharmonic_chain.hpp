@@ -37,7 +37,7 @@ struct AnharmonicChain {
   }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-    const Real third(cubic / 3), fourth(quartic / 4), half(k / 2);
+    const Real third = Real(cubic) / Real(3), fourth(quartic / 4), half(k / 2);
     const Index n = s.size();
     for (Index l = 0; l <= n; ++l) {
       const Real before = l > 0 ? s.positions()[l - 1][0] : Real(0), after = l < n ? s.positions()[l][0] : Real(0);

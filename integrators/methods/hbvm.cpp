@@ -70,6 +70,7 @@ template <class Real> void Hbvm<Real>::use_nodes(int nodes) {
 template <class Real> StepResult Hbvm<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
   StepResult made{.h = h};
   const Place at{f, t, y, h};
+  if (kept_.any()) kept_.start(f, t, y);
   predict(at);
   bool by_newton = false;
   while (true) {

@@ -79,15 +79,16 @@ void KeptInvariants<Real>::bind(const VectorField<Real>& f, std::string_view met
   const auto add = [&](Kind kind, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) kept_.push_back({kind, k});
   };
-  if (keeps("energy")) add(Kind::energy, 1);
   // Methods for y' = f keep the momentum, so this one is not to lose it.
   if (field.keeps_momentum) add(Kind::momentum, 3);
   if (particles_ > 0 && keeps("angular_momentum")) add(Kind::angular_momentum, 3);
   add(Kind::named, named_.size());
+  if (keeps("energy")) add(Kind::energy, 1);  // what determines it comes before
   const auto padded = static_cast<std::size_t>((n + 7) / 8 * 8);
   phi_.assign(kept_.size(), AlignedVector<Real>(lane_count * padded, Real(0)));
   for (auto* v : {&y_, &f_, &gradient_}) v->setZero(n);
   counts_.assign(kept_.size(), false);
+  gradients_.setZero(n, static_cast<Index>(kept_.size()));
 }
 
 /// gradient_ <- that of one invariant at y_, where the field is f_.
@@ -165,28 +166,53 @@ template <class Real> void KeptInvariants<Real>::correct(Real* g) {
   }
 }
 
-/// alpha <- gram^-1 alpha by Cholesky's factors L; an invariant that the ones before it determine, whose pivot is
-/// rounding, takes nothing.
-template <class Real> void KeptInvariants<Real>::solve() {
+/// Row a of Cholesky's factor of the Gram matrix, whose diagonal is 0 where an invariant takes nothing.
+template <class Real> void KeptInvariants<Real>::factorize_row(Index a) {
   using std::sqrt;
-  const Index count = alpha_.size();
+  for (Index b = 0; b < a; ++b) {
+    Real& into = gram_(a, b);
+    for (Index c = 0; c < b; ++c) into -= gram_(a, c) * gram_(b, c);
+    into = gram_(b, b) > Real(0) ? into / gram_(b, b) : Real(0);
+  }
+  Real& pivot = gram_(a, a);
+  for (Index c = 0; c < a; ++c) pivot -= gram_(a, c) * gram_(a, c);
+  pivot = counts_[static_cast<std::size_t>(a)] && pivot > Real(0) ? sqrt(pivot) : Real(0);
+}
+
+/// Averages of gradients along the path would be independent, by errors of the method: gradients at one point are not.
+template <class Real> void KeptInvariants<Real>::start(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
+  const auto count = static_cast<Index>(kept_.size());
   const Real rounding(std::is_same_v<Real, double> ? 0x1p-40 : 0x1p-96);
+  y_ = y;
+  f.rate(t, y, f_);
+  gram_.setZero(count, count);
   for (Index a = 0; a < count; ++a) {
-    for (Index b = 0; b < a; ++b) {
-      Real& into = gram_(a, b);
-      for (Index c = 0; c < b; ++c) into -= gram_(a, c) * gram_(b, c);
-      into = counts_[static_cast<std::size_t>(b)] ? into / gram_(b, b) : Real(0);
+    find_gradient(kept_[static_cast<std::size_t>(a)]);
+    gradients_.col(a) = gradient_;
+    for (Index b = 0; b <= a; ++b) {
+      for (Index i = 0; i < y.size(); ++i) gram_(a, b) += gradients_(i, a) * weights_[i] * gradients_(i, b);
     }
-    Real pivot = gram_(a, a);
-    for (Index c = 0; c < a; ++c) pivot -= gram_(a, c) * gram_(a, c);
-    counts_[static_cast<std::size_t>(a)] = pivot > rounding * gram_(a, a);
-    gram_(a, a) = counts_[static_cast<std::size_t>(a)] ? sqrt(pivot) : Real(1);
+    const Real whole = gram_(a, a);
+    counts_[static_cast<std::size_t>(a)] = true;
+    factorize_row(a);
+    if (gram_(a, a) * gram_(a, a) > rounding * whole) continue;
+    counts_[static_cast<std::size_t>(a)] = false;
+    gram_(a, a) = Real(0);
+  }
+}
+
+/// alpha <- gram^-1 alpha by Cholesky's factors.
+template <class Real> void KeptInvariants<Real>::solve() {
+  const Index count = alpha_.size();
+  const auto divide = [&](Index a) { alpha_[a] = gram_(a, a) > Real(0) ? alpha_[a] / gram_(a, a) : Real(0); };
+  for (Index a = 0; a < count; ++a) {
+    factorize_row(a);
     for (Index c = 0; c < a; ++c) alpha_[a] -= gram_(a, c) * alpha_[c];
-    alpha_[a] = counts_[static_cast<std::size_t>(a)] ? alpha_[a] / gram_(a, a) : Real(0);
+    divide(a);
   }
   for (Index a = count; a-- > 0;) {
     for (Index c = a + 1; c < count; ++c) alpha_[a] -= gram_(c, a) * alpha_[c];
-    alpha_[a] = counts_[static_cast<std::size_t>(a)] ? alpha_[a] / gram_(a, a) : Real(0);
+    divide(a);
   }
 }
 

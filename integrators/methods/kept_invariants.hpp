@@ -34,7 +34,7 @@ struct LineInvariants {
 ///     g_j <- g_j - sum_a alpha_a W phi_aj,   phi_aj = (2 j + 1) int P_j grad I_a,   sum_j phi_aj g_j / (2 j + 1) = 0
 ///
 /// W is 1, of particles 1/m. The change is of order h^(2 S), so that the order of the method stays.
-/// @cost a gradient of each invariant at each node, in a sweep
+/// @cost an evaluation a step, and in a sweep a gradient of each invariant at each node
 /// @source BrugnanoSun2014
 template <class Real> class KeptInvariants {
  public:
@@ -46,6 +46,10 @@ template <class Real> class KeptInvariants {
   /// @throws SchemeMismatch  for an invariant that the field does not have, or does not keep
   void bind(const VectorField<Real>& f, std::string_view method, int coefficients);
 
+  /// At the beginning of a step: an invariant whose gradient there is a combination of those before it, as that of the
+  /// energy of an orbit is of those of its angular momentum and Laplace's vector, is kept by them and left out.
+  void start(VectorField<Real>& f, const Real& t, const Vector<Real>& y);
+  /// At the beginning of a sweep.
   void begin();
   /// Takes gradients at eight nodes, of states and rates of all variables, shape (n, 8).
   void add(const typename LineTable<Real>::Eight& nodes, const Real* states, const Real* rates);
@@ -62,6 +66,7 @@ template <class Real> class KeptInvariants {
 
   void take_named(const VectorField<Real>& f, std::string_view method);
   void find_gradient(const Kept& one);
+  void factorize_row(Index a);
   void solve();
 
   LineInvariants wanted_;
@@ -74,7 +79,7 @@ template <class Real> class KeptInvariants {
   Vector<Real> masses_, weights_;          ///< of each q; of each variable in what is changed
   std::vector<AlignedVector<Real>> phi_;   ///< of each invariant, shape (n, 8)
   Vector<Real> y_, f_, gradient_, alpha_;  ///< at one node; how much each invariant takes away
-  Matrix<Real> gram_;
+  Matrix<Real> gram_, gradients_;
   std::vector<bool> counts_;  ///< of each invariant: those before it do not determine it
 };
 
