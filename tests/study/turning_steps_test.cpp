@@ -98,6 +98,8 @@ TEST_CASE("frequencies of bodies are those of forces on their sites, and points 
       CHECK(is_linear(scene));
     }
   }
+  const Scene waters = load_scene(NOETHER_SOURCE_DIR "/examples/rigid_water/scene.toml");  // charges are at sites alone
+  CHECK(spectrum_at(waters, waters.particles).fastest > 0);
 }
 
 TEST_CASE("a body that falls leaves by itself, and no step is blamed for it", "[stability][bodies]") {
