@@ -164,11 +164,11 @@ TEST_CASE("a bent bar at h omega = 16 keeps energy and angular momentum, by spar
 }
 
 TEST_CASE("a stiff block has the same steps for any number of threads", "[hyperelastic][energy]") {
-  const auto block = Block{.cells = {6, 4, 4}, .size = {3, 2, 2}, .density = 1, .bend = 0.3}.build();
+  const auto block = Block{.cells = {6, 4, 2}, .size = {3, 2, 1}, .density = 1, .bend = 0.3}.build();
   const int before = thread_count();
   const auto by = [&](int threads) {
     set_thread_count(threads);
-    return follow(classical_over(stiff, method("simo_tarnow_wong")), block, 0.05, 2).end;
+    return follow(classical_over(stiff, method("simo_tarnow_wong")), block, 0.05, 1).end;
   };
   const auto one = by(1), three = by(3);
   set_thread_count(before);
