@@ -188,7 +188,9 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
       VectorField<Real>::secant(t, y0, y1, a);
     }
   }
-  TangentPattern tangent() const override { return sees_secants ? claims_of(forces_).tangent : TangentPattern::none; }
+  TangentPattern tangent_pattern() const override {
+    return sees_secants ? claims_of(forces_).tangent : TangentPattern::none;
+  }
   std::string forces_without_tangent() const override {
     return names_of([](const AnyForce<Real>& term) { return term.claims().tangent == TangentPattern::none; });
   }

@@ -166,11 +166,11 @@ template <class Real> class VectorField {
     throw LogicError("secants were requested from a vector field that has none");
   }
   /// How many pairs of particles the derivatives of its secants have elements for, if it has them.
-  virtual TangentPattern tangent() const { return TangentPattern::none; }
+  virtual TangentPattern tangent_pattern() const { return TangentPattern::none; }
   /// Names of the forces whose secants have no derivatives, as messages list them.
   virtual std::string forces_without_tangent() const { return {}; }
   /// The derivatives of the accelerations that `secant` gives with respect to q1, not counted.
-  /// @throws LogicError  where `tangent` is none
+  /// @throws LogicError  where `tangent_pattern` is none
   virtual void secant_tangent(const Real& /*t*/, const Vector<Real>& /*y0*/, const Vector<Real>& /*y1*/,
                               SecantTangent<Real>& /*tangent*/) {
     throw LogicError("derivatives of secants were requested from a vector field that has none");

@@ -63,7 +63,7 @@ template <class Real> void Jacobian<Real>::bind(const VectorField<Real>& f, cons
   velocity_dependent_ = claims.velocity_dependent;
   time_dependent_ = claims.time_dependent;
   pattern_ = f.sparsity();
-  const TangentPattern tangent = velocity_dependent_ ? TangentPattern::none : f.tangent();
+  const TangentPattern tangent = velocity_dependent_ ? TangentPattern::none : f.tangent_pattern();
   const bool known = second_order_ ? tangent != TangentPattern::none : !pattern_.empty();
   const bool usual = second_order_ ? tangent == TangentPattern::sparse && size_ / 2 > most_dense : known;
   form_ = use.form.value_or(usual ? JacobianForm::sparse : JacobianForm::dense);

@@ -23,7 +23,7 @@ template <class Real> void SimoTarnowWong<Real>::bind(const VectorField<Real>& f
         "method '{}' needs secants of every force, but {} has none; use 'gonzalez', which keeps the energy without",
         name_, f.forces_without_secant()));
   }
-  const TangentPattern tangent = f.tangent();
+  const TangentPattern tangent = f.tangent_pattern();
   if (form_ == JacobianForm::sparse && tangent == TangentPattern::none) {
     throw SchemeMismatch(
         fmt::format("jacobian = \"sparse\" needs derivatives of the secants of every force, but {} has "
