@@ -7,6 +7,7 @@
 #include "numbers/dual.hpp"
 #include "numbers/wide_sum.hpp"
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -18,6 +19,7 @@ namespace noether {
 
 class NeighborList;
 class LaneByLane;
+template <class Real> class SecantTangent;
 
 /// What is to be summed beside the accelerations. In one byte: three that are stored one by one and read as a word wait
 /// for each other, which a look at a step of six bodies feels.
@@ -137,6 +139,10 @@ template <class Real> class ForceSink {
   void torque(Index i, const Vec3<Real>& t) {
     if (torques_ != nullptr) torques_->add(i, t);
   }
+  /// Lets secants add by how much they change with the second state (forces/secant_tangent.hpp).
+  void set_tangent(SecantTangent<Real>* tangent) { tangent_ = tangent; }
+  /// Null where nobody asked for it.
+  SecantTangent<Real>* tangent() const { return tangent_; }
   /// The longest kick by these accelerations [time]; 0 where it is not known.
   double kick() const { return kick_; }
   /// Where lanes that differ are evaluated one by one (engine/lane_by_lane.hpp); null: nobody has seen them differ.
@@ -170,11 +176,19 @@ template <class Real> class ForceSink {
   Workspace* own_ = nullptr;                ///< of the force that is summed
   std::unique_ptr<Workspace> lost_;         ///< of a force to which nobody lends one: gone with the sink
   VectorColumn<Real>* torques_ = nullptr;
+  SecantTangent<Real>* tangent_ = nullptr;
   double kick_ = 0;
   char letter_ = 0;  ///< 0: of all kicks
   bool has_sums_ = true;
   LaneByLane* lane_by_lane_ = nullptr;
   std::optional<Failure> failure_;
+};
+
+/// Whether secants tell by how much they change with the second state, and for how many pairs of particles.
+enum class TangentPattern : std::uint8_t {
+  none,   ///< they do not tell
+  full,   ///< for all pairs, or so many that a matrix of them is not sparse
+  sparse  ///< for few: each particle feels some others, the same ones at all times
 };
 
 /// What a force says of itself; a method states what it needs, and a refusal names what is missing.
@@ -200,6 +214,8 @@ struct ForceClaims {
   double drag = 0;                      ///< v' = - drag v, the same for all particles [1/time]
   std::string kicks = "B";              ///< letters of the kicks that it takes part in
   double range = 0;  ///< distance beyond which pairs do not feel each other [length]; 0: any distance
+  TangentPattern tangent =
+      TangentPattern::none;  ///< of its secants; those added by `Secants` (forces/secant.hpp) have one
 };
 
 /// The claims of a force type; a force that declares none is conservative, depends on positions only, and acts

@@ -54,7 +54,9 @@ struct Bonded {
                         source("Allen2017"));
   }
   static constexpr std::string_view only_once = "so every bond would count twice; take one of them out";
-  ForceClaims claims() const { return {.periodic = true, .bonded = true, .charges = false, .exclusions = false}; }
+  ForceClaims claims() const {
+    return {.periodic = true, .bonded = true, .charges = false, .exclusions = false, .tangent = TangentPattern::sparse};
+  }
 
   /// @throws Error  if the particles have no bonded terms, or terms of a potential or with parameters unknown to it
   template <class Real> void check(const ParticleSystem<Real>& s) const { terms_of(s.shared_topology(), s.size()); }

@@ -34,7 +34,8 @@ struct UniformField {
             .keeps_angular_momentum = false,
             .periodic = true,
             .charges = false,
-            .exclusions = false};
+            .exclusions = false,
+            .tangent = TangentPattern::sparse};
   }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
@@ -44,7 +45,7 @@ struct UniformField {
       if (out.wants_energy()) out.energy(-s.masses()[i] * dot(g, s.unwrapped(i)));
     }
   }
-  /// Its secants between two states.
+  /// Its secants between two states, the same wherever they are.
   template <class Real>
   void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
     detail::add_middle_secants(*this, out, from, to);
@@ -100,7 +101,9 @@ struct HarmonicField {
         source("Hooke1678"),
         field<&HarmonicField::k>("k", "mass/time^2", "stiffness of the spring").required("\"1 kg/s^2\""));
   }
-  static ForceClaims claims() { return {.keeps_momentum = false, .charges = false, .exclusions = false}; }
+  static ForceClaims claims() {
+    return {.keeps_momentum = false, .charges = false, .exclusions = false, .tangent = TangentPattern::sparse};
+  }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     for (Index i = 0; i < s.size(); ++i) {
@@ -113,6 +116,8 @@ struct HarmonicField {
   template <class Real>
   void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
     detail::add_middle_secants(*this, out, from, to);
+    const Mat3<Real> derivative = -Real(k) / Real(2) * Mat3<Real>::Identity();
+    for (Index i = 0; i < to.size() && out.tangent() != nullptr; ++i) out.tangent()->force(i, i, derivative);
   }
 };
 

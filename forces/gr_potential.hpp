@@ -37,7 +37,7 @@ struct GrPotential {
   /// It takes particle 0 for the heaviest one.
   static constexpr bool about_heaviest = true;
 
-  static ForceClaims claims() { return {.charges = false, .exclusions = false}; }
+  static ForceClaims claims() { return {.charges = false, .exclusions = false, .tangent = TangentPattern::sparse}; }
 
   /// @throws Error  for a G or c that is not above 0
   void check() const { check_relativity(*this); }

@@ -46,7 +46,13 @@ struct Gravity {
   /// Why it does not stand twice in a scene.
   static constexpr std::string_view only_once = "so every pair would attract twice; take one of them out";
   ForceClaims claims() const {
-    return {.sets = true, .kepler = true, .G = G, .softening = softening, .charges = false, .exclusions = false};
+    return {.sets = true,
+            .kepler = true,
+            .G = G,
+            .softening = softening,
+            .charges = false,
+            .exclusions = false,
+            .tangent = TangentPattern::full};
   }
 
   template <class Real> Real constant(const ParticleSystem<Real>& s) const { return Real(G ? *G : s.units().G); }

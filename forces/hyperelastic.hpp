@@ -39,7 +39,9 @@ template <class M> struct Hyperelastic : M {
         M::describe(),
         field<&Hyperelastic::region>("region", "1", "part of the mesh of this material; all of it unless given"));
   }
-  static ForceClaims claims() { return {.meshed = true, .charges = false, .exclusions = false}; }
+  static ForceClaims claims() {
+    return {.meshed = true, .charges = false, .exclusions = false, .tangent = TangentPattern::sparse};
+  }
 
   /// @throws Error  as the material does for its own fields
   void check() const {

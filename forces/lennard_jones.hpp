@@ -120,7 +120,12 @@ struct LennardJonesForce {
         field<&LennardJonesForce::precision>("precision", "1", "mixed: forces of pairs in single precision"));
   }
   ForceClaims claims() const {
-    return {.periodic = true, .pair_coefficients = true, .charges = false, .exclusions = true, .range = cutoff};
+    return {.periodic = true,
+            .pair_coefficients = true,
+            .charges = false,
+            .exclusions = true,
+            .range = cutoff,
+            .tangent = TangentPattern::full};
   }
 
   /// @throws Error  for a cutoff that is no length, a switch that begins elsewhere, one of epsilon and sigma alone

@@ -239,7 +239,10 @@ template <PairPotential P> struct PairForce : P {
           first_type, second_type);
     }
   }
-  ForceClaims claims() const { return {.periodic = true, .charges = charged, .exclusions = true, .range = reach()}; }
+  ForceClaims claims() const {
+    return {
+        .periodic = true, .charges = charged, .exclusions = true, .range = reach(), .tangent = TangentPattern::full};
+  }
 
   /// @throws Error  for a cutoff that is no length, a switch that begins elsewhere, a force without strength
   void check() const {

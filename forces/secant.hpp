@@ -4,6 +4,7 @@
 #include "engine/force_sink.hpp"
 #include "engine/sums.hpp"
 #include "forces/images.hpp"
+#include "forces/secant_tangent.hpp"
 
 #include <array>
 #include <cmath>
@@ -29,13 +30,17 @@ struct SecantPair {
 
 namespace detail {
 
-/// Whether the force in the middle of a step does the work of the energy, as far as numbers can tell. A quotient of
-/// the differences over shorter steps would tell less than this derivative.
-/// @param part  the step over the distances @param missing  work [energy] @param scale  of the energies [energy]
-template <class Real> bool middle_serves(const Real& part, const Real& missing, const Real& scale) {
-  using std::abs, std::sqrt;
-  const Real epsilon = std::numeric_limits<Real>::epsilon();
-  return part * part <= epsilon || abs(missing) <= Real(4) * epsilon * scale;
+/// Whether a step is so short that a quotient of the differences of energies over it would tell less than the
+/// derivative in its middle.
+/// @param step2, size2  squares of the step and of what moves
+template <class Real> bool is_shortest(const Real& step2, const Real& size2) {
+  return step2 <= Real(std::numeric_limits<Real>::epsilon()) * size2;
+}
+/// Whether the force in the middle of a step does the work of the energy, as far as numbers can tell.
+/// @param missing  work [energy] @param scale  of the energies [energy]
+template <class Real> bool is_rounding(const Real& missing, const Real& scale) {
+  using std::abs;
+  return abs(missing) <= Real(4) * Real(std::numeric_limits<Real>::epsilon()) * scale;
 }
 
 /// The mean of -U'(r)/r over r^2 from one value to the other, by Gauss's rule of three points.
@@ -61,16 +66,30 @@ template <class Real, class Terms>
 Real secant_of(const Real& from2, const Real& to2, const Real& step, const Terms& terms, const Real& end2 = Real(0)) {
   using std::abs;
   if (step == Real(0)) return terms(from2).force;
-  const Real size = to2 + from2, before = terms(from2).energy, after = terms(to2).energy;
+  const Real size = to2 + from2;
   // Three points are right to the 6th power of the step over the distances.
   const double epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
   const bool is_short = abs(step) <= Real(0.4 * std::cbrt(std::sqrt(epsilon))) * size;
-  if (is_short && (from2 < end2) == (to2 < end2)) {
-    const Real mean = mean_force(from2, step, terms), missing = before - after - mean * step / Real(2);
-    const Real rounding = Real(64 * epsilon) * (abs(before) + abs(after) + abs(mean) * size);
-    if (step * step <= Real(epsilon) * size * size || abs(missing) <= rounding) return mean;
-  }
+  const bool is_smooth = is_short && (from2 < end2) == (to2 < end2);
+  const Real mean = is_smooth ? mean_force(from2, step, terms) : Real(0);
+  if (is_smooth && step * step <= Real(epsilon) * size * size) return mean;
+  const Real before = terms(from2).energy, after = terms(to2).energy;
+  const Real missing = before - after - mean * step / Real(2);
+  const Real rounding = Real(64 * epsilon) * (abs(before) + abs(after) + abs(mean) * size);
+  if (is_smooth && abs(missing) <= rounding) return mean;
   return Real(2) * (before - after) / step;
+}
+
+/// By how much `secant_of`, k, changes with r1^2: (-U'(r1)/r1 - k) / step, and over short steps, where that would be
+/// rounded too far, half of what -U'(r)/r changes by at two thirds of the way.
+template <class Real, class Terms>
+Real secant_slope(const Real& from2, const Real& to2, const Real& step, const Real& k, const Terms& terms) {
+  using std::abs;
+  const Real size = to2 + from2;
+  const Real away = Real(std::cbrt(static_cast<double>(std::numeric_limits<Real>::epsilon()))) * size;
+  if (abs(step) > away) return (terms(to2).force - k) / step;
+  const Real place = from2 + Real(2) * step / Real(3);
+  return (terms(place + away).force - terms(place - away).force) / (Real(4) * away);
 }
 
 /// The way of a particle between two states; exact on the grid of a box, however many cells it has crossed.
@@ -101,8 +120,10 @@ Failure too_close(Index i, Index j, const std::vector<std::string>& names, doubl
 ///
 /// The secants of a term do the work of its energy over the step to rounding, are the same for both directions of the
 /// step, add up to no force and to no torque about the middle of the step, but for those of `tether`; they become the
-/// forces as the step becomes short. In a periodic box images are followed from the first state. Where an energy is
-/// that of the nearest image alone and another one is nearest in the second state, the sink fails.
+/// forces as the step becomes short. Their derivatives with respect to the second state go to the sink where it wants
+/// them; a force all of whose secants are added here may claim a `TangentPattern`. In a periodic box images are
+/// followed from the first state. Where an energy is that of the nearest image alone and another one is nearest in the
+/// second state, the sink fails.
 /// @source LaBuddeGreenspan1976, Gonzalez1996
 template <class Real> class Secants {
  public:
@@ -134,7 +155,9 @@ template <class Real> class Secants {
   template <class Terms> void tether(Index i, const Vec3<Real>& point, const Terms& terms) {
     const Vec3<Real> d0 = from_.box().minimum_image(Vec3<Real>(from_.positions()[i] - point));
     const Vec3<Real> moved = displacement(i);
-    if (keeps_image(i, i, Vec3<Real>(d0 + moved))) out_.force(i, force_of(d0, moved, terms, Real(0)));
+    if (!keeps_image(i, i, Vec3<Real>(d0 + moved))) return;
+    out_.force(i, force_of(d0, moved, terms, Real(0)));
+    if (out_.tangent() != nullptr) out_.tangent()->force(i, i, tangent_of(d0, moved, terms, Real(0)));
   }
 
   /// Three or four particles whose energy depends on their shape: the force in the middle of the step, and what is
@@ -144,30 +167,11 @@ template <class Real> class Secants {
   /// @param evaluate  (places): forces and energy, as members `force` and `energy`
   template <std::size_t n, class Evaluate>
   void group(const std::array<Index, n>& particles, const std::array<Vec3<Real>, n>& place, const Evaluate& evaluate) {
-    using std::abs, std::sqrt;
-    std::array<Vec3<Real>, n> moved, middle, last;
-    Real step2(0), size2(0), work(0), strength2(0);
-    for (std::size_t k = 0; k < n; ++k) {
-      moved[k] = displacement(particles[k]) - displacement(particles[1]);
-      last[k] = place[k] + moved[k];
-      middle[k] = (place[k] + last[k]) / Real(2);
-      step2 += norm2(moved[k]);
-      size2 += norm2(middle[k]);
-    }
-    const Real before = evaluate(place).energy, after = evaluate(last).energy;
-    std::array<Vec3<Real>, n> force = evaluate(middle).force;
-    for (std::size_t k = 0; k < n; ++k) {
-      work += dot(force[k], moved[k]);
-      strength2 += norm2(force[k]);
-    }
-    const Real missing = before - after - work, scale = abs(before) + abs(after) + sqrt(strength2 * size2);
-    if (!detail::middle_serves(Real(sqrt(step2 / size2)), missing, scale)) {
-      const std::array<Vec3<Real>, n> change = change_of_shape(place, last, middle, moved, size2);
-      Real along(0);
-      for (std::size_t k = 0; k < n; ++k) along += dot(change[k], moved[k]);
-      for (std::size_t k = 0; k < n && along > Real(0); ++k) force[k] += missing / along * change[k];
-    }
+    std::array<Vec3<Real>, n> moved;
+    for (std::size_t k = 0; k < n; ++k) moved[k] = displacement(particles[k]) - displacement(particles[1]);
+    const std::array<Vec3<Real>, n> force = forces_of_group(place, moved, evaluate);
     for (std::size_t k = 0; k < n; ++k) out_.force(particles[k], force[k]);
+    if (out_.tangent() != nullptr) add_tangent_of_group(particles, place, moved, evaluate);
   }
 
   /// Whether the nearest image of a pair in the first state is that of the second one, too; the sink fails if not.
@@ -215,6 +219,15 @@ template <class Real> class Secants {
     const Vec3<Real> d1 = d0 + moved, both = d0 + d1;
     return detail::secant_of(norm2(d0), norm2(d1), Real(dot(both, moved)), terms, end2) / Real(2) * both;
   }
+  /// By how much that force changes with the second distance vector.
+  template <class Terms>
+  Mat3<Real> tangent_of(const Vec3<Real>& d0, const Vec3<Real>& moved, const Terms& terms, const Real& end2) const {
+    const Vec3<Real> d1 = d0 + moved, both = d0 + d1;
+    const Real from2 = norm2(d0), to2 = norm2(d1), step = dot(both, moved);
+    const Real k = detail::secant_of(from2, to2, step, terms, end2);
+    const Real slope = detail::secant_slope(from2, to2, step, k, terms);
+    return k / Real(2) * Mat3<Real>::Identity() + slope * both * d1.transpose();
+  }
   template <class Terms>
   void add(const SecantPair& pair, const Vec3<Real>& d0, const Vec3<Real>& moved, const Real& part,
            const Terms& terms) {
@@ -231,6 +244,69 @@ template <class Real> class Secants {
       out_.acceleration(pair.j, Vec3<Real>(-to_.masses()[pair.i] * f));
     } else {
       out_.pair(pair.i, pair.j, f);
+    }
+    if (out_.tangent() != nullptr) add_tangent(pair, Mat3<Real>(part * tangent_of(d0, moved, terms, range2)));
+  }
+  void add_tangent(const SecantPair& pair, const Mat3<Real>& derivative) {
+    SecantTangent<Real>& tangent = *out_.tangent();
+    if (!pair.of_masses) return tangent.pair(pair.i, pair.j, derivative);
+    const Mat3<Real> on_i = to_.masses()[pair.j] * derivative, on_j = to_.masses()[pair.i] * derivative;
+    tangent.acceleration(pair.i, pair.i, on_i);
+    tangent.acceleration(pair.i, pair.j, Mat3<Real>(-on_i));
+    tangent.acceleration(pair.j, pair.i, Mat3<Real>(-on_j));
+    tangent.acceleration(pair.j, pair.j, on_j);
+  }
+  template <std::size_t n, class Evaluate>
+  static std::array<Vec3<Real>, n> forces_of_group(const std::array<Vec3<Real>, n>& place,
+                                                   const std::array<Vec3<Real>, n>& moved, const Evaluate& evaluate) {
+    using std::abs, std::sqrt;
+    std::array<Vec3<Real>, n> middle, last;
+    Real step2(0), size2(0), work(0), strength2(0);
+    for (std::size_t k = 0; k < n; ++k) {
+      last[k] = place[k] + moved[k];
+      middle[k] = (place[k] + last[k]) / Real(2);
+      step2 += norm2(moved[k]);
+      size2 += norm2(middle[k]);
+    }
+    std::array<Vec3<Real>, n> force = evaluate(middle).force;
+    if (detail::is_shortest(step2, size2)) return force;
+    const Real before = evaluate(place).energy, after = evaluate(last).energy;
+    for (std::size_t k = 0; k < n; ++k) {
+      work += dot(force[k], moved[k]);
+      strength2 += norm2(force[k]);
+    }
+    const Real missing = before - after - work, scale = abs(before) + abs(after) + sqrt(strength2 * size2);
+    if (detail::is_rounding(missing, scale)) return force;
+    const std::array<Vec3<Real>, n> change = change_of_shape(place, last, middle, moved, size2);
+    Real along(0);
+    for (std::size_t k = 0; k < n; ++k) along += dot(change[k], moved[k]);
+    for (std::size_t k = 0; k < n && along > Real(0); ++k) force[k] += missing / along * change[k];
+    return force;
+  }
+  /// By differences over the places of each particle but the second one; all of them moved together change nothing.
+  template <std::size_t n, class Evaluate>
+  void add_tangent_of_group(const std::array<Index, n>& particles, const std::array<Vec3<Real>, n>& place,
+                            std::array<Vec3<Real>, n> moved, const Evaluate& evaluate) {
+    using std::sqrt;
+    Real size2(0);
+    for (std::size_t k = 0; k < n; ++k) size2 += norm2(Vec3<Real>(place[k] + moved[k]));
+    const Real reach = Real(std::cbrt(static_cast<double>(std::numeric_limits<Real>::epsilon()))) * sqrt(size2);
+    for (std::size_t of = 0; of < n; ++of) {
+      if (of == 1) continue;
+      std::array<Mat3<Real>, n> derivative;
+      for (Index axis = 0; axis < 3; ++axis) {
+        const Real here = moved[of][axis], up = here + reach, down = here - reach;
+        moved[of][axis] = up;
+        const std::array<Vec3<Real>, n> after = forces_of_group(place, moved, evaluate);
+        moved[of][axis] = down;
+        const std::array<Vec3<Real>, n> before = forces_of_group(place, moved, evaluate);
+        moved[of][axis] = here;
+        for (std::size_t k = 0; k < n; ++k) derivative[k].col(axis) = (after[k] - before[k]) / (up - down);
+      }
+      for (std::size_t k = 0; k < n; ++k) {
+        out_.tangent()->force(particles[k], particles[of], derivative[k]);
+        out_.tangent()->force(particles[k], particles[1], Mat3<Real>(-derivative[k]));
+      }
     }
   }
   /// A motion of the particles about the middle of the step that changes all distances, and the volume of four, as the
@@ -313,7 +389,7 @@ void add_middle_secants(const F& force, ForceSink<Real>& out, const ParticleSyst
                                m[i] * norm2(about)};
   });
   const Real missing = before - after - work, scale = abs(before) + abs(after) + strength;
-  const bool serves = middle_serves(Real(1), missing, scale) || !(square > Real(0));
+  const bool serves = is_rounding(missing, scale) || !(square > Real(0));
   const Real factor = serves ? Real(0) : Real(missing / square);
   for (Index i = 0; i < to.size(); ++i) {
     Vec3<Real> a = std::as_const(own.a)[i];

@@ -49,7 +49,9 @@ struct HarmonicBond {
         field<&HarmonicBond::k>("k", "mass/time^2", "stiffness of each spring").required("\"1 kg/s^2\""),
         field<&HarmonicBond::length>("length", "length", "length at rest"));
   }
-  static ForceClaims claims() { return {.periodic = true, .charges = false, .exclusions = false}; }
+  static ForceClaims claims() {
+    return {.periodic = true, .charges = false, .exclusions = false, .tangent = TangentPattern::sparse};
+  }
 
   /// @throws Error  for a negative length
   void check() const { detail::check_length(length); }
@@ -107,7 +109,8 @@ struct Tether {
             .keeps_angular_momentum = point == std::array<double, 3>{},
             .periodic = true,
             .charges = false,
-            .exclusions = false};
+            .exclusions = false,
+            .tangent = TangentPattern::sparse};
   }
 
   /// @throws Error  for a negative length

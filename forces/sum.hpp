@@ -41,6 +41,7 @@ inline void merge(ForceClaims& all, const ForceClaims& one) {
   all.exclusions = one_says_so(all.exclusions, one.exclusions);
   all.drag += one.drag;
   all.range = std::max(all.range, one.range);
+  all.tangent = std::min(all.tangent, one.tangent);
   for (const char letter : one.kicks) {
     if (all.kicks.find(letter) == std::string::npos) all.kicks += letter;
   }
@@ -106,7 +107,12 @@ template <class... Fs> class Sum {
     return std::apply([&](const auto&... force) { return (one(force) && ...); }, forces_);
   }
   ForceClaims claims() const {
-    ForceClaims all{.periodic = true, .sets = sizeof...(Fs) == 1, .charges = false, .exclusions = false, .kicks = ""};
+    ForceClaims all{.periodic = true,
+                    .sets = sizeof...(Fs) == 1,
+                    .charges = false,
+                    .exclusions = false,
+                    .kicks = "",
+                    .tangent = TangentPattern::sparse};
     std::apply([&](const auto&... force) { (detail::merge(all, claims_of(force)), ...); }, forces_);
     return all;
   }
@@ -159,7 +165,12 @@ template <class Real = double> class ForceField {
     for_terms(out, [&](const AnyForce<Real>& term) { term.add_to(out, s); });
   }
   ForceClaims claims() const {
-    ForceClaims all{.periodic = true, .sets = terms_.size() == 1, .charges = false, .exclusions = false, .kicks = ""};
+    ForceClaims all{.periodic = true,
+                    .sets = terms_.size() == 1,
+                    .charges = false,
+                    .exclusions = false,
+                    .kicks = "",
+                    .tangent = TangentPattern::sparse};
     for (const auto& term : terms_) detail::merge(all, term.claims());
     return all;
   }

@@ -5,6 +5,7 @@
 #include "forces/materials.hpp"
 #include "forces/mesh_elements.hpp"
 #include "forces/secant.hpp"
+#include "forces/secant_stress.hpp"
 #include "forces/tetrahedron_row.hpp"
 #include "numbers/parallel.hpp"
 #include "numbers/select.hpp"
@@ -27,40 +28,6 @@ Failure inverted_element(Index element, const std::array<Index, 4>& particles, d
 /// Writes the forces of the groups [from, to) into their slots, with the bits that elements have one by one.
 /// @return  whether det F > 0 in all of them; the forces mean something only then
 bool tetrahedra_in_lanes(const TetrahedronGroups& groups, Index from, Index to);
-
-/// A deformation F, row by row, from the edges of a tetrahedron and their inverse at rest.
-template <class Real> struct Deformation {
-  std::array<Vec3<Real>, 3> row;
-
-  /// F^T F.
-  Symmetric<Real> square() const {
-    const auto sum = [&](int i, int j) {
-      return row[0][i] * row[0][j] + row[1][i] * row[1][j] + row[2][i] * row[2][j];
-    };
-    return {sum(0, 0), sum(1, 1), sum(2, 2), sum(0, 1), sum(0, 2), sum(1, 2)};
-  }
-  Real determinant() const { return dot(row[0], cross(row[1], row[2])); }
-  /// F S.
-  Deformation times(const Symmetric<Real>& s) const {
-    Deformation product;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3<Real>& f = row[i];
-      product.row[i] = Vec3<Real>(f[0] * s.xx + f[1] * s.xy + f[2] * s.xz, f[0] * s.xy + f[1] * s.yy + f[2] * s.yz,
-                                  f[0] * s.xz + f[1] * s.yz + f[2] * s.zz);
-    }
-    return product;
-  }
-};
-
-/// F^T G + G^T F: the change of the square where F changes by G, both from the middle.
-template <class Real> Symmetric<Real> change_of_square(const Deformation<Real>& f, const Deformation<Real>& g) {
-  const auto sum = [&](int i, int j) {
-    Real total(0);
-    for (std::size_t r = 0; r < 3; ++r) total += f.row[r][i] * g.row[r][j] + g.row[r][i] * f.row[r][j];
-    return total;
-  };
-  return {sum(0, 0), sum(1, 1), sum(2, 2), sum(0, 1), sum(0, 2), sum(1, 2)};
-}
 
 /// What one evaluation sums beside the forces.
 template <class Real> struct MeshTotals {
@@ -98,11 +65,15 @@ template <class Real, class M> class TetrahedronLoop {
       for_blocks(elements_.size(), [&](Index begin, Index end) { evaluate<false>(begin, end); });
     }
     for_blocks(s_.size(), [&](Index begin, Index end) { gather(out, begin, end); });
+    if constexpr (with_secants) {
+      for (Index k = 0; k < elements_.size() && out.tangent() != nullptr; ++k) add_tangent(k, *out.tangent());
+    }
     if (const Index k = inverted_.load(); k != none) tell(out, k);
   }
 
  private:
-  static constexpr std::uint32_t places_ahead = 96;  ///< those of some four particles
+  static constexpr std::uint32_t places_ahead = 96;                   ///< those of some four particles
+  static constexpr bool with_secants = std::is_same_v<Real, Number>;  ///< doubles and Quad
   static constexpr Index none = std::numeric_limits<Index>::max();
 
   template <bool with_totals> MeshTotals<Real> evaluate(Index begin, Index end) {
@@ -110,13 +81,11 @@ template <class Real, class M> class TetrahedronLoop {
     if constexpr (!with_totals && std::is_same_v<Real, double> && requires { material_.law(); }) {
       if (from_ == nullptr && forces_in_lanes(begin, end)) return totals;
     }
-    for (Index k = begin; k < end; ++k) {
-      if (from_ != nullptr) {
-        add_secant(k);
-      } else {
-        add_element<with_totals>(k, totals);
-      }
+    if constexpr (with_secants) {
+      for (Index k = begin; k < end && from_ != nullptr; ++k) add_secant(k);
+      if (from_ != nullptr) return totals;
     }
+    for (Index k = begin; k < end; ++k) add_element<with_totals>(k, totals);
     return totals;
   }
 
@@ -168,9 +137,8 @@ template <class Real, class M> class TetrahedronLoop {
     }
   }
 
-  void add_secant(Index k) {
-    using std::abs, std::sqrt;
-    const Real half(0.5), two(2);
+  DeformationStep<Real> step_of(Index k) const {
+    const Real half(0.5);
     const auto edge = edges(elements_, k, [&](Index i) { return Vec3<Real>(from_->positions()[i]); });
     const auto way = edges(elements_, k, [&](Index i) { return way_of(*from_, s_, i); });
     std::array<Vec3<Real>, 3> middle, last;
@@ -178,17 +146,35 @@ template <class Real, class M> class TetrahedronLoop {
       middle[a] = edge[a] + half * way[a];
       last[a] = edge[a] + way[a];
     }
-    const Deformation<Real> f = deformation(k, middle), first = deformation(k, edge), end = deformation(k, last);
-    if (first.determinant() <= Real(0) || end.determinant() <= Real(0)) note(k);
-    const Symmetric<Real> c0 = first.square(), c1 = end.square(), mean = half * (c0 + c1);
-    const Symmetric<Real> change = change_of_square(f, deformation(k, way));
-    Symmetric<Real> stress = stress_of<Real>(material_, mean);
-    const Real before = material_.energy(c0), after = material_.energy(c1);
-    const Real work = half * contract(stress, change), size2 = contract(mean, mean), step2 = contract(change, change);
-    const Real missing = after - before - work;
-    const Real scale = abs(before) + abs(after) + sqrt(contract(stress, stress) * size2);
-    if (!middle_serves(Real(sqrt(step2 / size2)), missing, scale)) stress = stress + two * missing / step2 * change;
-    put(k, f.times(stress), Real(elements_.shape(k, 9)));
+    DeformationStep<Real> step{deformation(k, edge), deformation(k, middle), deformation(k, last), {}, {}, {}};
+    step.before = step.first.square();
+    step.after = step.last.square();
+    step.change = change_of_square(step.middle, deformation(k, way));
+    return step;
+  }
+  void add_secant(Index k) {
+    const DeformationStep<Real> step = step_of(k);
+    if (step.first.determinant() <= Real(0) || step.last.determinant() <= Real(0)) note(k);
+    const Symmetric<Real> stress = secant_stress<Real>(material_, step.before, step.after, step.change);
+    put(k, step.middle.times(stress), Real(elements_.shape(k, 9)));
+  }
+  /// How the forces on the corners change with the places of all four, which do nothing where they move together.
+  void add_tangent(Index k, SecantTangent<Real>& tangent) const {
+    std::array<Vec3<Real>, 4> gradient;
+    gradient[0] = Vec3<Real>::Zero();
+    for (std::size_t a = 1; a < 4; ++a) {
+      for (Index j = 0; j < 3; ++j) gradient[a][j] = elements_.shape(k, 3 * static_cast<Index>(a) - 3 + j);
+      gradient[0] -= gradient[a];
+    }
+    const Real volume(elements_.shape(k, 9));
+    const auto slopes = secant_slopes(material_, step_of(k));
+    for (std::size_t b = 0; b < 4; ++b) {
+      const auto pull = slopes_along(slopes, Vec3<Real>(-volume * gradient[b]));
+      for (std::size_t a = 0; a < 4; ++a) {
+        tangent.force(elements_.particle(k, static_cast<Index>(a)), elements_.particle(k, static_cast<Index>(b)),
+                      Mat3<Real>(gradient[a][0] * pull[0] + gradient[a][1] * pull[1] + gradient[a][2] * pull[2]));
+      }
+    }
   }
 
   /// Writes the forces on the corners of element k of a first Piola-Kirchhoff stress into its slots.

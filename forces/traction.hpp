@@ -60,7 +60,8 @@ struct Traction {
             .keeps_angular_momentum = false,
             .meshed = true,
             .charges = false,
-            .exclusions = false};
+            .exclusions = false,
+            .tangent = TangentPattern::sparse};
   }
   /// @throws Error  without a mesh, or without this surface
   template <class Real> void check(const ParticleSystem<Real>& s) const {

@@ -4,6 +4,7 @@
 #include "engine/erasure.hpp"
 #include "engine/lane_by_lane.hpp"
 #include "engine/signature.hpp"
+#include "forces/secant_tangent.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/particle_vector.hpp"
 #include "integrators/vector_field.hpp"
@@ -176,31 +177,31 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   }
   bool has_secant() const override { return noether::has_secant<Real>(forces_); }
   std::string forces_without_secant() const override {
-    std::string names;
-    for (const AnyForce<Real>& term : detail::terms_of<Real>(forces_)) {
-      if (!term.has_secant()) names += (names.empty() ? "'" : ", '") + term.name() + "'";
-    }
-    return names;
+    return names_of([](const AnyForce<Real>& term) { return !term.has_secant(); });
   }
   void secant(const Real& t, const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) override {
-    if constexpr (requires(ForceSink<Real> & out) { forces_.add_secant_to(out, work_, work_); }) {
+    if constexpr (sees_secants) {
       ++this->evaluations().force;
-      if (!other_) other_.emplace(work_);
-      scatter(y0, *other_);
-      scatter(y1, work_);
-      // Both in the cells of one state: what evaluations have wrapped since is no part of the way between them.
-      if (work_.box().is_periodic()) other_->restore_images(work_.images());
-      other_->clock().set_stage_offset(t);
-      work_.clock().set_stage_offset(t);
-      ForceSink<Real> sink(a_, work_, {}, &workspace_);
-      forces_.add_secant_to(sink, *other_, work_);
-      this->note(sink.failure());
-      if (sink.failure()) spoil(a_);  // what is there is not all of it
+      add_secants(t, y0, y1, nullptr);
       a.resize(3 * work_.size());
       write(a.data());
     } else {
       VectorField<Real>::secant(t, y0, y1, a);
     }
+  }
+  TangentPattern tangent_pattern() const override {
+    return sees_secants ? claims_of(forces_).tangent : TangentPattern::none;
+  }
+  std::string forces_without_tangent() const override {
+    return names_of([](const AnyForce<Real>& term) { return term.claims().tangent == TangentPattern::none; });
+  }
+  void secant_tangent(const Real& t, const Vector<Real>& y0, const Vector<Real>& y1,
+                      SecantTangent<Real>& tangent) override {
+    if (!sees_secants) VectorField<Real>::secant_tangent(t, y0, y1, tangent);
+    do {
+      tangent.begin(work_.masses());
+      add_secants(t, y0, y1, &tangent);
+    } while (!tangent.end());
   }
 
   bool has_derivative() const override { return noether::has_derivative<Real>(forces_); }
@@ -271,6 +272,9 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   }
 
  private:
+  static constexpr bool sees_secants = requires(const F& forces, ForceSink<Real>& out, const ParticleSystem<Real>& s) {
+    forces.add_secant_to(out, s, s);
+  };
   static constexpr bool sees_packs = std::is_same_v<Real, double> && Force<F, Pack>;
   /// Above, the lanes are better filled with particles.
   static constexpr Index most_in_lanes = 64;
@@ -365,6 +369,30 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     if (!sink.failure()) return;
     this->note(sink.failure());
     spoil(a_);
+  }
+  /// Accelerations between two states; not numbers where they cannot be computed. @param tangent  null: unwanted
+  void add_secants(const Real& t, const Vector<Real>& y0, const Vector<Real>& y1, SecantTangent<Real>* tangent) {
+    if constexpr (sees_secants) {
+      if (!other_) other_.emplace(work_);
+      scatter(y0, *other_);
+      scatter(y1, work_);
+      // Both in the cells of one state: what evaluations have wrapped since is no part of the way between them.
+      if (work_.box().is_periodic()) other_->restore_images(work_.images());
+      other_->clock().set_stage_offset(t);
+      work_.clock().set_stage_offset(t);
+      ForceSink<Real> sink(a_, work_, {}, &workspace_);
+      sink.set_tangent(tangent);
+      forces_.add_secant_to(sink, *other_, work_);
+      this->note(sink.failure());
+      if (sink.failure()) spoil(a_);  // what is there is not all of it
+    }
+  }
+  template <class Wanted> std::string names_of(const Wanted& wanted) const {
+    std::string names;
+    for (const AnyForce<Real>& term : detail::terms_of<Real>(forces_)) {
+      if (wanted(term)) names += (names.empty() ? "'" : ", '") + term.name() + "'";
+    }
+    return names;
   }
   template <class Number> static void spoil(VectorColumn<Number>& a) {
     for (int k = 0; k < 3; ++k) std::fill_n(a.component(k), a.size(), Number(std::numeric_limits<double>::quiet_NaN()));

@@ -68,6 +68,7 @@ template <class Real> struct FieldInvariant {
 };
 
 template <class Real> class LieField;
+template <class Real> class SecantTangent;
 
 /// The right-hand side of y' = f(t, y), erased: classical methods are compiled once for each number type.
 ///
@@ -172,6 +173,16 @@ template <class Real> class VectorField {
   /// @throws LogicError  where `has_secant` is false
   virtual void secant(const Real& /*t*/, const Vector<Real>& /*y0*/, const Vector<Real>& /*y1*/, Vector<Real>& /*a*/) {
     throw LogicError("secants were requested from a vector field that has none");
+  }
+  /// How many pairs of particles the derivatives of its secants have elements for, if it has them.
+  virtual TangentPattern tangent_pattern() const { return TangentPattern::none; }
+  /// Names of the forces whose secants have no derivatives, as messages list them.
+  virtual std::string forces_without_tangent() const { return {}; }
+  /// The derivatives of the accelerations that `secant` gives with respect to q1, not counted.
+  /// @throws LogicError  where `tangent_pattern` is none
+  virtual void secant_tangent(const Real& /*t*/, const Vector<Real>& /*y0*/, const Vector<Real>& /*y1*/,
+                              SecantTangent<Real>& /*tangent*/) {
+    throw LogicError("derivatives of secants were requested from a vector field that has none");
   }
 
   /// What of it is to be checked when a saved run goes on, beside its signature.

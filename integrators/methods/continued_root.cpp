@@ -2,6 +2,7 @@
 
 #include "integrators/methods/krylov.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,11 +10,15 @@ namespace noether {
 
 namespace {
 
-/// Unknowns up to which the matrix is dense by default.
-constexpr Index most_dense_unknowns = 300;
+/// Unknowns up to which the matrix is dense by default, and those up to which it is although its tangent is sparse.
+constexpr Index most_dense_unknowns = 300, most_dense_of_sparse = 100;
+/// Unknowns up to which factors of blocks in three dimensions take less time than products (docs/limits.md).
+constexpr Index most_sparse_unknowns = 1500;
 /// Unknowns from which sweeps are tried before a matrix is found, and how much each of them has to shrink the updates.
 constexpr Index least_swept = 5;
 constexpr double worth_a_sweep = 0.1;
+/// Updates, relative to the solution, below which a root of a part of a step serves as the guess of the next part.
+constexpr double near_enough = 1e-3;
 
 /// Relative length of differences to one side: above the square root of rounding, since a secant is a quotient of small
 /// numbers.
@@ -25,19 +30,30 @@ template <class Real> double central_difference() {
   return std::cbrt(static_cast<double>(std::numeric_limits<Real>::epsilon()));
 }
 
+/// How matrices are kept unless the user says so.
+JacobianForm usual_form(Index unknowns, TangentPattern tangent) {
+  const bool is_between = unknowns > most_dense_of_sparse && unknowns <= most_sparse_unknowns;
+  if (tangent == TangentPattern::sparse && is_between) return JacobianForm::sparse;
+  return unknowns > most_dense_unknowns ? JacobianForm::matrix_free : JacobianForm::dense;
+}
+
 }  // namespace
 
-template <class Real> void ContinuedRoot<Real>::bind(Index unknowns, std::optional<JacobianForm> form) {
-  if (form == JacobianForm::sparse) {
+template <class Real>
+void ContinuedRoot<Real>::bind(Index unknowns, std::optional<JacobianForm> form, TangentPattern tangent) {
+  has_tangent_ = tangent != TangentPattern::none;
+  if (form == JacobianForm::sparse && !has_tangent_) {
     throw SchemeMismatch(
-        "jacobian = \"sparse\" needs to know where the tangent of a step can be nonzero, which secants do not tell; "
-        "use jacobian = \"matrix_free\" or \"dense\"",
+        "jacobian = \"sparse\" needs the tangent of a step, whose elements this method does not know; use jacobian = "
+        "\"matrix_free\" or \"dense\"",
         {.key = "jacobian"});
   }
-  matrix_free_ = form ? *form == JacobianForm::matrix_free : unknowns > most_dense_unknowns;
+  form_ = form.value_or(usual_form(unknowns, tangent));
+  // Small ones are quickly differenced, and keep their bits.
+  has_tangent_ = has_tangent_ && (form_ == JacobianForm::sparse || unknowns > most_dense_of_sparse);
   for (Vector<Real>* v : {&value_, &residual_, &update_, &moved_, &moved_value_, &trial_, &root_, &before_})
     v->setZero(unknowns);
-  if (matrix_free_) return;
+  if (form_ != JacobianForm::dense) return;
   matrix_.resize(unknowns, unknowns);
   factors_.resize(unknowns);
 }
@@ -45,7 +61,46 @@ template <class Real> void ContinuedRoot<Real>::bind(Index unknowns, std::option
 /// Factors of I - dg/dx at x. @return whether the matrix is regular
 template <class Real>
 bool ContinuedRoot<Real>::renew(StepEquations<Real>& equations, const Real& part, const Vector<Real>& x) {
-  if (matrix_free_) return true;
+  if (form_ == JacobianForm::matrix_free) return true;
+  if (form_ == JacobianForm::sparse) return renew_sparse(equations.tangent(part, x));
+  return has_tangent_ ? renew_dense(equations.tangent(part, x)) : renew_by_differences(equations, part, x);
+}
+
+template <class Real> bool ContinuedRoot<Real>::renew_sparse(const ScaledMatrix<Real>& tangent) {
+  using std::abs;
+  if (!have_same_pattern(sparse_matrix_, *tangent.matrix)) {
+    sparse_matrix_ = *tangent.matrix;
+    sparse_factors_.forget();
+  }
+  const int* const first = sparse_matrix_.outerIndexPtr();
+  Real largest(0);
+  for (Index j = 0; j < sparse_matrix_.cols(); ++j) {
+    for (int at = first[j]; at < first[j + 1]; ++at) {
+      Real& element = sparse_matrix_.valuePtr()[at];
+      element = -tangent.factor * tangent.matrix->valuePtr()[at];
+      if (sparse_matrix_.innerIndexPtr()[at] == j) element += Real(1);
+      if (abs(element) > largest) largest = abs(element);
+    }
+  }
+  stiff_ = largest > Real(2);
+  return sparse_factors_.compute(sparse_matrix_);
+}
+
+template <class Real> bool ContinuedRoot<Real>::renew_dense(const ScaledMatrix<Real>& tangent) {
+  matrix_.setIdentity();
+  const int* const first = tangent.matrix->outerIndexPtr();
+  for (Index j = 0; j < matrix_.cols(); ++j) {
+    for (int at = first[j]; at < first[j + 1]; ++at) {
+      matrix_(tangent.matrix->innerIndexPtr()[at], j) -= tangent.factor * tangent.matrix->valuePtr()[at];
+    }
+  }
+  stiff_ = matrix_.cwiseAbs().maxCoeff() > Real(2);
+  return factors_.compute(matrix_);
+}
+
+template <class Real>
+bool ContinuedRoot<Real>::renew_by_differences(StepEquations<Real>& equations, const Real& part,
+                                               const Vector<Real>& x) {
   const Real reach = Real(central_difference<Real>()) * equations.reach(part, x);
   moved_ = x;
   for (Index j = 0; j < x.size(); ++j) {
@@ -65,10 +120,9 @@ bool ContinuedRoot<Real>::renew(StepEquations<Real>& equations, const Real& part
 /// Leaves in `update_` what the matrix makes of `residual_`. @return whether its system was solved
 template <class Real>
 bool ContinuedRoot<Real>::correct(StepEquations<Real>& equations, const Real& part, const Vector<Real>& x) {
-  if (!matrix_free_) {
-    factors_.solve(residual_, update_);
-    return true;
-  }
+  if (form_ == JacobianForm::dense) factors_.solve(residual_, update_);
+  if (form_ == JacobianForm::sparse) sparse_factors_.solve(residual_, update_);
+  if (form_ != JacobianForm::matrix_free) return true;
   const double product = 10 * secant_difference<Real>();
   const Real reach = Real(secant_difference<Real>()) * equations.reach(part, x);
   const LinearMap<Real> map = [&](const Vector<Real>& v, Vector<Real>& out) {
@@ -131,12 +185,13 @@ typename ContinuedRoot<Real>::Found ContinuedRoot<Real>::contract(StepEquations<
     if (!std::isfinite(now)) return Found::no;
     if (renews) away = now;
     const bool fresh = renews, slow = shrinks > 0.25, serves = !stiff_ || away * away <= rounding;
-    if (now == 0) return Found::yes;
+    const bool is_guess = has_tangent_ && part < Real(1) && iteration > 0;
+    if (now == 0 || (is_guess && !slow && now <= near_enough)) return Found::yes;
     if (serves && iteration > 0 && (now * shrinks <= rounding / 64 || (slow && now <= smooth))) return Found::yes;
     if (slow && now > rough && (fresh || iteration == 1)) return Found::no;
     // Rounding of stiff equations lies above that of the numbers: updates that shrink no more with new matrices are it.
     if (slow && fresh && ++idle == 3) return Found::yes;
-    renews = matrix_free_ || !serves || shrinks > 0.02;
+    renews = form_ == JacobianForm::matrix_free || !serves || shrinks > 0.02;
     before = now;
   }
   return Found::no;
@@ -161,7 +216,7 @@ std::optional<Failure> ContinuedRoot<Real>::follow(StepEquations<Real>& equation
       part = next;
       length *= 2;
     } else if (length > shortest) {
-      length /= 2;
+      length = (next - part) / 2;
     } else if (found == Found::unsolved) {
       return unsolved_system();
     } else {

@@ -4,10 +4,17 @@
 #include "integrators/method.hpp"
 #include "integrators/methods/dense_factors.hpp"
 #include "integrators/methods/newton.hpp"
+#include "integrators/methods/sparse_factors.hpp"
 
 #include <optional>
 
 namespace noether {
+
+/// A matrix as a number times a sparse one.
+template <class Real> struct ScaledMatrix {
+  Real factor;
+  const Eigen::SparseMatrix<Real>* matrix;  ///< with elements on the diagonal
+};
 
 /// The equations x = g(part, x) of a part of a step, 0 to 1 of its length.
 template <class Real> class StepEquations {
@@ -19,6 +26,10 @@ template <class Real> class StepEquations {
   virtual UpdateSize size_of(const Real& part, const Vector<Real>& update, const Vector<Real>& x) = 0;
   /// By how much components of x may change before g changes altogether.
   virtual Real reach(const Real& part, const Vector<Real>& x) const = 0;
+  /// dg/dx at x, where its elements are known; it serves until it is asked for again.
+  virtual ScaledMatrix<Real> tangent(const Real& /*part*/, const Vector<Real>& /*x*/) {
+    throw LogicError("a tangent was requested from equations that have none");
+  }
 };
 
 /// Solves x = g(1, x) by Newton's iteration to rounding, for the root that continues x of the beginning, g(0, x) = x.
@@ -30,15 +41,19 @@ template <class Real> class StepEquations {
 /// shorter than 2^-12 of the step the root ends in a fold, and the step has a named outcome.
 ///
 /// Sweeps x <- g(x) are tried first where there are many unknowns; steps that are not stiff need no more. I - dg/dx is
-/// found by differences of g in every direction, or, matrix-free, in those that a Krylov method asks for.
-/// @cost sweeps: 5 to 16 evaluations of g; dense: 2 n evaluations and n^3 / 3 for a matrix, three to six evaluations
-///       with it; matrix-free: some 5 sqrt(condition) evaluations for each of four updates
+/// made of the tangent of the equations; without one it is found by differences of g in every direction, or,
+/// matrix-free, in those that a Krylov method asks for. Its factors are sparse or dense.
+/// @cost sweeps: 5 to 16 evaluations of g; else three to six matrices for a stiff step. Dense: n^3 / 3 for a matrix,
+///       without a tangent 2 n evaluations beside; sparse: O(n) for chains, some n^2 for blocks; matrix-free: some
+///       5 sqrt(condition) evaluations for each of four updates
 /// @source OrtegaRheinboldt1970, AllgowerGeorg1990
 template <class Real> class ContinuedRoot {
  public:
-  /// @param form  default: dense up to 300 unknowns, matrix-free beyond
-  /// @throws SchemeMismatch  for a sparse one: zeros of the tangent are not declared
-  void bind(Index unknowns, std::optional<JacobianForm> form);
+  /// @param form  default: sparse if the tangent is and there are more than 100 and at most 1500 unknowns; else dense
+  /// up
+  ///   to 300 unknowns, matrix-free beyond
+  /// @throws SchemeMismatch  for a sparse one without a tangent
+  void bind(Index unknowns, std::optional<JacobianForm> form, TangentPattern tangent = TangentPattern::none);
   /// x, the guess for no step at all, becomes the root. @param h  of the step, for messages [time]
   /// @return nothing, or why there is none
   std::optional<Failure> solve(StepEquations<Real>& equations, Vector<Real>& x, double h, Evaluations& count);
@@ -48,13 +63,19 @@ template <class Real> class ContinuedRoot {
   bool sweep(StepEquations<Real>& equations, Vector<Real>& x);
   Found contract(StepEquations<Real>& equations, const Real& part, Vector<Real>& x, Evaluations& count);
   bool renew(StepEquations<Real>& equations, const Real& part, const Vector<Real>& x);
+  bool renew_dense(const ScaledMatrix<Real>& tangent);
+  bool renew_sparse(const ScaledMatrix<Real>& tangent);
+  bool renew_by_differences(StepEquations<Real>& equations, const Real& part, const Vector<Real>& x);
   bool correct(StepEquations<Real>& equations, const Real& part, const Vector<Real>& x);
   std::optional<Failure> follow(StepEquations<Real>& equations, Vector<Real>& x, double h, Evaluations& count);
 
-  bool matrix_free_ = false;
+  JacobianForm form_ = JacobianForm::dense;
+  bool has_tangent_ = false;
   bool stiff_ = false;  ///< the matrix is far from the identity
   DenseFactors<Real> factors_;
   Matrix<Real> matrix_;
+  SparseFactors<Real> sparse_factors_;
+  Eigen::SparseMatrix<Real> sparse_matrix_;
   Vector<Real> value_, residual_, update_, moved_, moved_value_, trial_, root_, before_;
 };
 

@@ -12,6 +12,9 @@ namespace noether {
 
 namespace {
 
+/// Coordinates of particles up to which their matrix is dense by default.
+constexpr Index most_dense = 300;
+
 /// Relative length that central differences are taken over: the cube root of rounding.
 template <class Real> double difference_length() {
   return std::cbrt(static_cast<double>(std::numeric_limits<Real>::epsilon()));
@@ -38,6 +41,19 @@ std::vector<std::vector<Index>> grouped(const Sparsity& pattern) {
   return groups;
 }
 
+template <class Real> [[noreturn]] void refuse_sparse(const VectorField<Real>& f, const FieldClaims& claims) {
+  const std::string forces = claims.second_order && !claims.velocity_dependent ? f.forces_without_tangent() : "";
+  const std::string why = forces.empty() ? fmt::format(
+                                               "'{}' does not declare where its Jacobian can be nonzero, so it "
+                                               "has no sparse one",
+                                               claims.name)
+                                         : fmt::format(
+                                               "a sparse Jacobian needs derivatives of the secants of every "
+                                               "force, but {} has none",
+                                               forces);
+  throw SchemeMismatch(why + "; use jacobian = \"matrix_free\" or \"dense\"", {.key = "jacobian"});
+}
+
 }  // namespace
 
 template <class Real> void Jacobian<Real>::bind(const VectorField<Real>& f, const JacobianUse& use) {
@@ -47,14 +63,11 @@ template <class Real> void Jacobian<Real>::bind(const VectorField<Real>& f, cons
   velocity_dependent_ = claims.velocity_dependent;
   time_dependent_ = claims.time_dependent;
   pattern_ = f.sparsity();
-  const bool known = !pattern_.empty() && !second_order_;
-  form_ = use.form.value_or(known ? JacobianForm::sparse : JacobianForm::dense);
-  if (sparse() && !known) {
-    throw SchemeMismatch(fmt::format("'{}' does not declare where its Jacobian can be nonzero, so it has no sparse "
-                                     "one; use jacobian = \"matrix_free\" or \"dense\"",
-                                     claims.name),
-                         {.key = "jacobian"});
-  }
+  const TangentPattern tangent = velocity_dependent_ ? TangentPattern::none : f.tangent_pattern();
+  const bool known = second_order_ ? tangent != TangentPattern::none : !pattern_.empty();
+  const bool usual = second_order_ ? tangent == TangentPattern::sparse && size_ / 2 > most_dense : known;
+  form_ = use.form.value_or(usual ? JacobianForm::sparse : JacobianForm::dense);
+  if (sparse() && !known) refuse_sparse(f, claims);
   residual_ = use.rounding ? 1e3 * static_cast<double>(std::numeric_limits<Real>::epsilon()) : 1e-8;
   tolerance_ = use.tolerance;
   groups_.clear();
@@ -79,6 +92,11 @@ template <class Real> void Jacobian<Real>::bind_dense(const FieldClaims& claims)
 }
 
 template <class Real> void Jacobian<Real>::bind_sparse() {
+  sparse_factors_.forget();
+  if (second_order_) {
+    half_.resize(size_ / 2);
+    return;
+  }
   if (static_cast<Index>(pattern_.size()) != size_) {
     throw Error(fmt::format("a sparsity of {} columns was given for {} variables", pattern_.size(), size_));
   }
@@ -92,7 +110,6 @@ template <class Real> void Jacobian<Real>::bind_sparse() {
   entries_.setFromTriplets(places.begin(), places.end());
   entries_.makeCompressed();
   matrix_ = entries_;
-  sparse_factors_ = SparseFactors<Real>();
   half_.resize(size_);
 }
 
@@ -103,6 +120,11 @@ template <class Real> void Jacobian<Real>::evaluate(VectorField<Real>& f, const 
     time_ = t;
     point_ = y;
     set_scale();
+    return;
+  }
+  if (sparse() && second_order_) {
+    f.secant_tangent(t, y, y, tangent_);
+    entries_ = Real(2) * tangent_.matrix();
     return;
   }
   if (!sparse() && f.jacobian(t, y, J_)) return;
@@ -196,12 +218,8 @@ template <class Real> bool Jacobian<Real>::factorize_half(const Real& a, const R
 template <class Real> bool Jacobian<Real>::compute() {
   factorized_ = ready_ = true;
   if (matrix_free()) return true;
+  if (sparse()) return compute_sparse();
   const auto& [p, q, r] = weights_;
-  if (sparse()) {
-    for (Index k = 0; k < entries_.nonZeros(); ++k) matrix_.valuePtr()[k] = -q * entries_.valuePtr()[k];
-    for (Index j = 0; j < size_; ++j) matrix_.coeffRef(j, j) += p;
-    return sparse_factors_.compute(matrix_);
-  }
   const Index n = dense_.rows(), shift = second_order_ ? n : 0;
   for (Index j = 0; j < n; ++j) {
     for (Index i = 0; i < n; ++i) dense_(i, j) = -q * J_(shift + i, shift + j);
@@ -209,6 +227,17 @@ template <class Real> bool Jacobian<Real>::compute() {
     dense_(j, j) += p;
   }
   return factors_.compute(dense_);
+}
+
+template <class Real> bool Jacobian<Real>::compute_sparse() {
+  if (!have_same_pattern(matrix_, entries_)) {
+    matrix_ = entries_;
+    sparse_factors_.forget();
+  }
+  const Real weight = second_order_ ? weights_[2] : weights_[1];
+  for (Index k = 0; k < entries_.nonZeros(); ++k) matrix_.valuePtr()[k] = -weight * entries_.valuePtr()[k];
+  for (Index j = 0; j < matrix_.cols(); ++j) matrix_.coeffRef(j, j) += weights_[0];
+  return sparse_factors_.compute(matrix_);
 }
 
 /// x <- M^-1 x; a copy, and a run that goes on from a file, make their factors here, the same ones.
@@ -236,6 +265,8 @@ template <class Real> bool Jacobian<Real>::solve(VectorField<Real>& f, Vector<Re
     multiply(f, direction_, product_);
     direction_.setZero();
     for (Index i = 0; i < n; ++i) v[i] += product_[n + i];
+  } else if (sparse()) {
+    v += b_ * (entries_ * x.head(n));
   } else {
     for (Index j = 0; j < n; ++j) {
       for (Index i = 0; i < n; ++i) v[i] += b_ * J_(n + i, j) * x[j];
@@ -323,6 +354,7 @@ template <class Real> void Jacobian<Real>::save(SavedState& saved, const std::st
   const auto values = kept(*this);
   save_value(saved, prefix + (matrix_free() ? "point" : "elements"), std::vector<Real>(values.begin(), values.end()));
   if (matrix_free()) save_value(saved, prefix + "time", std::vector<Real>{time_});
+  if (sparse() && second_order_) save_pattern(saved, prefix);
   save_value(saved, prefix + "weights", std::vector<Real>{a_, b_, weights_[0], weights_[1], weights_[2]});
   save_value(saved, prefix + "factorized", factorized_);
 }
@@ -331,6 +363,7 @@ template <class Real> void Jacobian<Real>::load(const SavedState& saved, const s
   std::vector<Real> elements, weights, time;
   load_value(saved, prefix + (matrix_free() ? "point" : "elements"), elements);
   if (matrix_free()) load_value(saved, prefix + "time", time);
+  if (sparse() && second_order_) load_pattern(saved, prefix);
   load_value(saved, prefix + "weights", weights);
   load_value(saved, prefix + "factorized", factorized_);
   std::size_t at = 0;
@@ -343,6 +376,37 @@ template <class Real> void Jacobian<Real>::load(const SavedState& saved, const s
   b_ = detail::element(weights, 1);
   for (std::size_t k = 0; k < 3; ++k) weights_[k] = detail::element(weights, 2 + k);
   ready_ = false;
+}
+
+/// Where the elements of A are, which it tells itself.
+template <class Real> void Jacobian<Real>::save_pattern(SavedState& saved, const std::string& prefix) const {
+  std::vector<std::int64_t> rows, columns;
+  for (Index j = 0; j < entries_.outerSize(); ++j) {
+    for (typename Eigen::SparseMatrix<Real>::InnerIterator at(entries_, j); at; ++at) {
+      rows.push_back(at.row());
+      columns.push_back(j);
+    }
+  }
+  save_value(saved, prefix + "rows", rows);
+  save_value(saved, prefix + "columns", columns);
+}
+
+template <class Real> void Jacobian<Real>::load_pattern(const SavedState& saved, const std::string& prefix) {
+  std::vector<std::int64_t> rows, columns;
+  load_value(saved, prefix + "rows", rows);
+  load_value(saved, prefix + "columns", columns);
+  std::vector<Eigen::Triplet<Real>> places;
+  const auto n = static_cast<std::int64_t>(size_ / 2);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const std::int64_t row = detail::element(rows, k), column = columns[k];
+    if (row < 0 || column < 0 || row >= n || column >= n) {
+      throw Error(
+          fmt::format("the saved Jacobian has an element ({}, {}), but {} x {} were expected", row, column, n, n));
+    }
+    places.emplace_back(row, column, Real(0));
+  }
+  entries_.resize(n, n);
+  entries_.setFromTriplets(places.begin(), places.end());
 }
 
 template class Jacobian<double>;

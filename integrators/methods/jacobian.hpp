@@ -2,6 +2,7 @@
 /// df/dy of a vector field, and the linear systems that implicit methods solve with it.
 
 #include "engine/saved_state.hpp"
+#include "forces/secant_tangent.hpp"
 #include "integrators/method.hpp"
 #include "integrators/methods/dense_factors.hpp"
 #include "integrators/methods/krylov.hpp"
@@ -17,7 +18,8 @@ namespace noether {
 
 /// What a method wants of its Jacobian.
 struct JacobianUse {
-  std::optional<JacobianForm> form = {};    ///< default: sparse where the field has a `sparsity`, else dense
+  /// Default: sparse where the field has a `sparsity`, or more than 300 coordinates and a sparse tangent; else dense.
+  std::optional<JacobianForm> form = {};
   std::optional<Tolerance> tolerance = {};  ///< matrix-free: errors are measured by it; default: all components alike
   bool rounding = false;  ///< matrix-free: as accurate as rounding allows, where no iteration corrects what is left
 };
@@ -29,6 +31,9 @@ struct JacobianUse {
 /// factors are sparse. For particles, J = [0 1; A B], and systems of half the size are solved:
 ///
 ///     (a^2 I - a b B - b^2 A) v = a s + b A r,   x = (r + b v) / a        from a x - b v = r, a v - b (A x + B v) = s
+///
+/// Where forces know the derivatives of their secants, A may be sparse: it is twice that of the secants from a state to
+/// itself, for these do not change where the two states change places.
 ///
 /// Matrix-free, no element is found: the point is kept, and systems are solved with products J v, each of them one
 /// derivative, counted as an evaluation, or two evaluations for each kind of variables.
@@ -62,9 +67,13 @@ template <class Real> class Jacobian {
   JacobianForm form() const { return form_; }
   /// Element of J, if it is not matrix-free.
   Real operator()(Index i, Index j) const {
-    if (sparse()) return entries_.coeff(i, j);
-    return J_(i, j);
+    if (!sparse()) return J_(i, j);
+    if (!second_order_) return entries_.coeff(i, j);
+    const Index n = size_ / 2;
+    return i >= n && j < n ? entries_.coeff(i - n, j) : Real(i + n == j ? 1 : 0);
   }
+  /// J where it is sparse, for second order A, with elements on the diagonal.
+  const Eigen::SparseMatrix<Real>& elements() const { return entries_; }
 
   void save(SavedState& saved, const std::string& prefix) const;
   void load(const SavedState& saved, const std::string& prefix);
@@ -73,6 +82,9 @@ template <class Real> class Jacobian {
   bool sparse() const { return form_ == JacobianForm::sparse; }
   bool matrix_free() const { return form_ == JacobianForm::matrix_free; }
   void bind_sparse();
+  void save_pattern(SavedState& saved, const std::string& prefix) const;
+  void load_pattern(const SavedState& saved, const std::string& prefix);
+  bool compute_sparse();
   void bind_dense(const FieldClaims& claims);
   void store(std::size_t group, const Vector<Real>& column);
   double increment(const Vector<Real>& y, Index j) const;
@@ -89,6 +101,7 @@ template <class Real> class Jacobian {
   Sparsity pattern_;                        ///< rows of each column, the diagonal among them
   Matrix<Real> J_;
   Eigen::SparseMatrix<Real> entries_, matrix_;
+  SecantTangent<Real> tangent_;
   Vector<Real> point_;   ///< matrix-free: y where J is meant
   Real time_ = Real(0);  ///< and t
   double residual_ = 0;  ///< of systems, relative to the right-hand side [1]

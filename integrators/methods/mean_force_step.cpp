@@ -34,6 +34,11 @@ template <class Real> class MeanForceEquations final : public StepEquations<Real
     const Real most = y_.head(n).cwiseAbs().maxCoeff();
     return (most > Real(0) ? most : Real(1)) / abs(part * Real(h_));
   }
+  ScaledMatrix<Real> tangent(const Real& part, const Vector<Real>& u) override {
+    place(part, u);
+    const Real step = part * Real(h_);
+    return {step * step / Real(2), &force_.tangent(y_, end_)};
+  }
 
  private:
   /// The state at the end of the part.
@@ -54,8 +59,9 @@ template <class Real> class MeanForceEquations final : public StepEquations<Real
 
 }  // namespace
 
-template <class Real> void MeanForceStep<Real>::bind(const VectorField<Real>& f, std::optional<JacobianForm> form) {
-  root_.bind(f.size() / 2, form);
+template <class Real>
+void MeanForceStep<Real>::bind(const VectorField<Real>& f, std::optional<JacobianForm> form, TangentPattern tangent) {
+  root_.bind(f.size() / 2, form, tangent);
   u_.resize(f.size() / 2);
   end_.resize(f.size());
 }

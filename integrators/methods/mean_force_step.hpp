@@ -12,6 +12,10 @@ template <class Real> class MeanForce {
   virtual ~MeanForce() = default;
   /// Accelerations a, shape (size / 2), between the positions of y0 and y1, y = (q, v), the same for both directions.
   virtual void between(const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) = 0;
+  /// da/dq1, where its elements are known, with some on the diagonal; it serves until it is asked for again.
+  virtual const Eigen::SparseMatrix<Real>& tangent(const Vector<Real>& /*y0*/, const Vector<Real>& /*y1*/) {
+    throw LogicError("a tangent was requested from a mean force that has none");
+  }
 };
 
 /// Solves for u, half of what the velocities change by:
@@ -25,7 +29,8 @@ template <class Real> class MeanForce {
 template <class Real> class MeanForceStep {
  public:
   /// @throws SchemeMismatch  see `ContinuedRoot`
-  void bind(const VectorField<Real>& f, std::optional<JacobianForm> form);
+  void bind(const VectorField<Real>& f, std::optional<JacobianForm> form,
+            TangentPattern tangent = TangentPattern::none);
   /// y becomes the state a step of h later. @return nothing, or why there is none
   std::optional<Failure> make(MeanForce<Real>& force, Vector<Real>& y, double h, Evaluations& count);
 

@@ -23,7 +23,15 @@ template <class Real> void SimoTarnowWong<Real>::bind(const VectorField<Real>& f
         "method '{}' needs secants of every force, but {} has none; use 'gonzalez', which keeps the energy without",
         name_, f.forces_without_secant()));
   }
-  step_.bind(f, form_);
+  const TangentPattern tangent = f.tangent_pattern();
+  if (form_ == JacobianForm::sparse && tangent == TangentPattern::none) {
+    throw SchemeMismatch(
+        fmt::format("jacobian = \"sparse\" needs derivatives of the secants of every force, but {} has "
+                    "none; use jacobian = \"matrix_free\" or \"dense\"",
+                    f.forces_without_tangent()),
+        {.key = "jacobian"});
+  }
+  step_.bind(f, form_, tangent);
 }
 
 namespace {
@@ -31,19 +39,24 @@ namespace {
 /// The secants of a field.
 template <class Real> class SecantsOfField final : public MeanForce<Real> {
  public:
-  SecantsOfField(VectorField<Real>& f, const Real& t) : f_(f), t_(t) {}
+  SecantsOfField(VectorField<Real>& f, const Real& t, SecantTangent<Real>& tangent) : f_(f), t_(t), tangent_(tangent) {}
   void between(const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) override { f_.secant(t_, y0, y1, a); }
+  const Eigen::SparseMatrix<Real>& tangent(const Vector<Real>& y0, const Vector<Real>& y1) override {
+    f_.secant_tangent(t_, y0, y1, tangent_);
+    return tangent_.matrix();
+  }
 
  private:
   VectorField<Real>& f_;
   const Real& t_;
+  SecantTangent<Real>& tangent_;
 };
 
 }  // namespace
 
 template <class Real>
 StepResult SimoTarnowWong<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  SecantsOfField<Real> secants(f, t);
+  SecantsOfField<Real> secants(f, t, tangent_);
   return {.h = h, .failure = step_.make(secants, y, h, f.evaluations())};
 }
 

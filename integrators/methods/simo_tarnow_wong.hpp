@@ -1,6 +1,7 @@
 #pragma once
 /// The method of Simo, Tarnow and Wong: energy, momentum and angular momentum of particles, all exact.
 
+#include "forces/secant_tangent.hpp"
 #include "integrators/methods/mean_force_step.hpp"
 
 namespace noether {
@@ -31,6 +32,7 @@ template <class Real> class SimoTarnowWong final : public Method<Real> {
   std::string_view name_;
   std::optional<JacobianForm> form_;
   MeanForceStep<Real> step_;
+  SecantTangent<Real> tangent_;
 };
 
 extern template class SimoTarnowWong<double>;

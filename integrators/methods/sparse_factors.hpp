@@ -5,6 +5,7 @@
 
 #include <Eigen/SparseCore>
 
+#include <algorithm>
 #include <memory>
 
 namespace noether {
@@ -23,11 +24,21 @@ template <class Real> class SparseFactors {
   bool compute(const Eigen::SparseMatrix<Real>& matrix);
   bool ready() const { return solver_ != nullptr; }
   void solve(const Vector<Real>& right, Vector<Real>& x) const;
+  /// Forgets what is known of the places of elements: the next matrix may have others.
+  void forget() { *this = SparseFactors(); }
 
  private:
   struct Solver;
   std::unique_ptr<Solver> solver_;
 };
+
+/// Whether elements stand in the same places.
+template <class Real> bool have_same_pattern(const Eigen::SparseMatrix<Real>& a, const Eigen::SparseMatrix<Real>& b) {
+  const Index columns = a.outerSize(), elements = a.nonZeros();
+  return b.outerSize() == columns && b.nonZeros() == elements &&
+         std::equal(a.outerIndexPtr(), a.outerIndexPtr() + columns + 1, b.outerIndexPtr()) &&
+         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + elements, b.innerIndexPtr());
+}
 
 extern template class SparseFactors<double>;
 extern template class SparseFactors<Quad>;

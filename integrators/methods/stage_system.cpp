@@ -24,8 +24,8 @@ StageSystem<Real>::StageSystem(const VectorField<Real>& f, int stages, const Sta
   second_order_ = claims.second_order && rates == Rates::accelerations;
   velocity_dependent_ = claims.velocity_dependent;
   n_ = second_order_ ? f.size() / 2 : f.size();
-  if (Sparsity known = f.sparsity(); !known.empty() && !second_order_) pattern_ = std::move(known);
-  if (!form && !pattern_ && rows() > most_dense) form = JacobianForm::matrix_free;
+  const bool known = !second_order_ && !f.sparsity().empty();
+  if (!form && !known && rows() > most_dense) form = JacobianForm::matrix_free;
   jacobians_[0].bind(f, {.form = form});
   direction_.setZero(f.size());
 }
@@ -42,7 +42,7 @@ void StageSystem<Real>::evaluate_at(VectorField<Real>& f, int stage, const Real&
   jacobians_[static_cast<std::size_t>(stage)].evaluate(f, t, y);
 }
 
-/// What variable i of stage `to` takes from variable j of stage `from`.
+/// What variable i of stage `to` takes from variable j of stage `from`, of a dense J.
 template <class Real> Real StageSystem<Real>::element(int to, int from, Index i, Index j) const {
   const auto into = static_cast<std::size_t>(to), out_of = static_cast<std::size_t>(from);
   const Jacobian<Real>& J = at(to);
@@ -68,20 +68,23 @@ template <class Real> bool StageSystem<Real>::factorize_dense() {
 template <class Real> bool StageSystem<Real>::factorize_sparse() {
   std::vector<Eigen::Triplet<Real>> elements;
   for (int from = 0; from < stages_; ++from) {
-    for (Index j = 0; j < n_; ++j) {
-      for (int to = 0; to < stages_; ++to) {
-        bool diagonal = false;
-        for (const Index i : (*pattern_)[static_cast<std::size_t>(j)]) {
-          diagonal = diagonal || i == j;
-          elements.emplace_back(to * n_ + i, from * n_ + j, element(to, from, i, j));
+    for (int to = 0; to < stages_; ++to) {
+      const auto into = static_cast<std::size_t>(to), out_of = static_cast<std::size_t>(from);
+      const Real weight = second_order_ ? h_ * h_ * twice_[out_of][into] : h_ * a_[out_of][into];
+      const Eigen::SparseMatrix<Real>& J = at(to).elements();
+      for (Index j = 0; j < n_; ++j) {
+        for (typename Eigen::SparseMatrix<Real>::InnerIterator value(J, j); value; ++value) {
+          const Real one(to == from && value.row() == j ? 1 : 0);
+          elements.emplace_back(to * n_ + value.row(), from * n_ + j, one - weight * value.value());
         }
-        if (!diagonal) elements.emplace_back(to * n_ + j, from * n_ + j, element(to, from, j, j));
       }
     }
   }
   Eigen::SparseMatrix<Real> matrix(rows(), rows());
   matrix.setFromTriplets(elements.begin(), elements.end());
-  return sparse_factors_.compute(matrix);
+  if (!have_same_pattern(matrix, sparse_matrix_)) sparse_factors_.forget();
+  sparse_matrix_ = std::move(matrix);
+  return sparse_factors_.compute(sparse_matrix_);
 }
 
 template <class Real> bool StageSystem<Real>::factorize(double h) {

@@ -46,7 +46,7 @@ template <class Real> class StageSystem {
   bool solve(VectorField<Real>& f, Vector<Real>& x);
 
  private:
-  bool sparse() const { return pattern_ && jacobians_[0].form() == JacobianForm::sparse; }
+  bool sparse() const { return jacobians_[0].form() == JacobianForm::sparse; }
   bool matrix_free() const { return jacobians_[0].form() == JacobianForm::matrix_free; }
   const Jacobian<Real>& at(int stage) const { return jacobians_[shared_ ? 0 : static_cast<std::size_t>(stage)]; }
   Real element(int to, int from, Index i, Index j) const;
@@ -61,9 +61,9 @@ template <class Real> class StageSystem {
   Real h_ = Real(0);
   bool shared_ = true;                     ///< one J serves all stages
   std::vector<Jacobian<Real>> jacobians_;  ///< of each stage
-  std::optional<Sparsity> pattern_;
   DenseFactors<Real> factors_;
   SparseFactors<Real> sparse_factors_;
+  Eigen::SparseMatrix<Real> sparse_matrix_;
   Vector<Real> direction_, product_, solution_;
 };
 

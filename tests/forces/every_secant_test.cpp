@@ -11,6 +11,7 @@
 #include "forces/lennard_jones.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/pair_potentials.hpp"
+#include "forces/secant_tangent.hpp"
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
 #include "forces/traction.hpp"
@@ -231,6 +232,73 @@ TEST_CASE("secants keep momentum and angular momentum where their forces do", "[
   CHECK(kept > 20);
 }
 
+/// The derivative of secants along a motion of the second state, by their tangent.
+template <class Real>
+Vector<Real> slope_along(const AnyForce<Real>& force, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to,
+                         const Vector<Real>& way) {
+  SecantTangent<Real> tangent;
+  VectorColumn<Real> a(to.size());
+  do {
+    tangent.begin(to.masses());
+    ForceSink<Real> sink(a, to, {});
+    sink.set_tangent(&tangent);
+    force.add_secant_to(sink, from, to);
+  } while (!tangent.end());
+  return tangent.matrix() * way;
+}
+
+/// The same by a difference of the secants themselves.
+Vector<Quad> difference_along(const AnyForce<Quad>& force, const ParticleSystem<Quad>& from,
+                              const ParticleSystem<Quad>& to, const Vector<Quad>& way) {
+  const Index n = to.size();
+  const auto at = [&](const Quad& part) {
+    ParticleSystem<Quad> moved = to;
+    for (Index i = 0; i < n; ++i) {
+      moved.shift(i, Vec3<Quad>(part * Vec3<Quad>(way[i], way[n + i], way[2 * n + i])), Vec3<Quad>::Zero());
+    }
+    moved.moved();
+    return secants_of(force, from, moved);
+  };
+  const Quad part(1e-12);
+  const VectorColumn<Quad> up = at(part), down = at(-part);
+  Vector<Quad> slope(3 * n);
+  for (Index i = 0; i < n; ++i) {
+    for (Index k = 0; k < 3; ++k) slope[k * n + i] = (up[i][k] - down[i][k]) / (part + part);
+  }
+  return slope;
+}
+
+TEST_CASE("the derivatives of secants are those that differences of 113 bits find, for steps of any size",
+          "[forces][secant]") {
+  int known = 0;
+  for (const NamedForce& one : forces_with_secants()) {
+    if (one.force.claims().tangent == TangentPattern::none) continue;
+    ++known;
+    // The work that a middle misses is rounded, and divided by the step; so are products of the constants of a pair.
+    const bool has_middle =
+        one.name == "hyperelastic" || one.angles.size() + one.dihedrals.size() + one.impropers.size();
+    const double bound = has_middle ? 1e-4 : 1e-8;
+    const double wide_bound = one.name == "lennard_jones" ? 1e-6 : has_middle ? 1e-8 : 1e-13;
+    const ParticleSystem<double> from = charged_helix(one);
+    const AnyForce<Quad> wide = *one.force.in_quad();
+    for (const double size : {0.0, 1e-9, 1e-6, 1e-4, 1e-2, 0.1}) {
+      INFO(one.name << ", " << size);
+      const ParticleSystem<double> to = one_step_later(from, size);
+      Vector<double> way(3 * to.size());
+      for (Index k = 0; k < way.size(); ++k) way[k] = std::sin(3.0 + 5.0 * static_cast<double>(k));
+      const ParticleSystem<Quad> wide_from = from.as<Quad>(), wide_to = to.as<Quad>();
+      const Vector<Quad> wide_way = way.cast<Quad>();
+      const Vector<Quad> expected = difference_along(wide, wide_from, wide_to, wide_way);
+      const double most = static_cast<double>(expected.cwiseAbs().maxCoeff());
+      const Vector<Quad> narrow_error = slope_along(one.force, from, to, way).cast<Quad>() - expected;
+      CHECK(static_cast<double>(narrow_error.cwiseAbs().maxCoeff()) <= bound * most);
+      const Vector<Quad> wide_error = slope_along(wide, wide_from, wide_to, wide_way) - expected;
+      CHECK(static_cast<double>(wide_error.cwiseAbs().maxCoeff()) <= wide_bound * most);
+    }
+  }
+  CHECK(known == 38);
+}
+
 TEST_CASE("all forces of points with an energy have secants, but for one that depends on time", "[forces][secant]") {
   std::set<std::string> have = {"oscillating_field"};
   for (const NamedForce& one : forces_with_secants()) have.insert(one.name);
@@ -258,6 +326,9 @@ TEST_CASE("sums of forces have secants if all of them do", "[forces][secant]") {
   expected.all() += secants_of<double>(spring, from, to).all();
   CHECK(most_apart(secants_of<double>(sum, from, to), expected) < 1e-14 * most_of(expected));
   CHECK_FALSE(Sum(gravity, OscillatingField{}).has_secant());
+  CHECK(Sum(spring, UniformField{}).claims().tangent == TangentPattern::sparse);
+  CHECK(sum.claims().tangent == TangentPattern::full);
+  CHECK(Sum(gravity, HenonHeiles{}).claims().tangent == TangentPattern::none);
 }
 
 }  // namespace noether

@@ -5,6 +5,7 @@
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/oblateness.hpp"
+#include "forces/springs.hpp"
 #include "forces/sum.hpp"
 #include "integrators/force_motion.hpp"
 #include "tests/methods/stiff_problems.hpp"
@@ -130,6 +131,51 @@ TEST_CASE("columns that share no row are found together") {
     const auto exact = field_of(Heat{.n = n}, y);
     CHECK(jacobians_apart(*exact, *field, 0, y) < 1e-9);
   }
+}
+
+TEST_CASE("the sparse Jacobian of forces whose secants have derivatives is the dense one, and solves the same",
+          "[jacobian]") {
+  const auto s = four_bodies();
+  const HarmonicBond springs{.k = 3, .length = 0.7, .tied = {{0, 1}, {1, 2}, {0, 3}}};
+  const Sum forces(springs, UniformField{{0, 0, -1}}, Tether{.k = 2, .length = 0.3, .tied = {{3}}});
+  const auto field = motion(forces, s);
+  const Vector<double> y = gathered(*field, s);
+  Jacobian<double> dense, sparse;
+  dense.bind(*field);
+  sparse.bind(*field, {.form = JacobianForm::sparse});
+  CHECK(dense.form() == JacobianForm::dense);
+  dense.evaluate(*field, 0, y);
+  sparse.evaluate(*field, 0, y);
+  CHECK(sparse.elements().nonZeros() < 12 * 12);
+  for (Index j = 0; j < y.size(); ++j) {
+    for (Index i = 0; i < y.size(); ++i) CHECK(std::abs(sparse(i, j) - dense(i, j)) < 1e-9);
+  }
+  REQUIRE(dense.factorize(1, 0.3));
+  REQUIRE(sparse.factorize(1, 0.3));
+  Vector<double> x = y, other = y;
+  REQUIRE(dense.solve(*field, x));
+  REQUIRE(sparse.solve(*field, other));
+  CHECK(apart(x, other) < 1e-10);
+  // Read back, and in a copy, its factors are made again, the same ones.
+  SavedState saved;
+  sparse.save(saved, "j/");
+  Jacobian<double> read, copy = sparse;
+  read.bind(*field, {.form = JacobianForm::sparse});
+  read.load(saved, "j/");
+  Vector<double> once_more = y, of_copy = y;
+  REQUIRE(read.solve(*field, once_more));
+  REQUIRE(copy.solve(*field, of_copy));
+  CHECK(once_more == other);
+  CHECK(of_copy == other);
+}
+
+TEST_CASE("a sparse Jacobian of forces without derivatives of secants is refused by their names", "[jacobian]") {
+  const auto s = four_bodies();
+  const auto field = motion(Sum(Gravity{.G = 1}, Oblateness{.J2 = 0.01, .radius = 0.2}), s);
+  Jacobian<double> jacobian;
+  CHECK_THROWS_WITH(jacobian.bind(*field, {.form = JacobianForm::sparse}),
+                    "a sparse Jacobian needs derivatives of the secants of every force, but 'oblateness' has none; use "
+                    "jacobian = \"matrix_free\" or \"dense\"");
 }
 
 TEST_CASE("a dense Jacobian and a sparse one are the same and solve the same") {
