@@ -122,10 +122,11 @@ template <class Real> void Manifold<Real>::check(const ParticleSystem<Real>& s, 
   }
   if (!claims.variables) return check_particles(s, claims);
   if (!options_.onto.empty()) {
-    throw SchemeMismatch(fmt::format("'{}' is a system of variables, of which no {} is known; a program can project it "
-                                     "onto an invariant of its own",
-                                     claims.hamiltonian, choice_name(options_.onto.front())),
-                         {.key = "onto"});
+    throw SchemeMismatch(
+        fmt::format("'{}' is a system of variables, whose {} is not projected onto; a program can project it "
+                    "onto an invariant of its own",
+                    claims.hamiltonian, choice_name(options_.onto.front())),
+        {.key = "onto"});
   }
   if (options_.how == Projection::hamiltonian || options_.moves) {
     throw SchemeMismatch(fmt::format("'{}' is a system of variables without positions and velocities; use how = "
