@@ -415,8 +415,6 @@ std::span<const MethodInfo> methods::extended_space_list() {
       semiexplicit("semiexplicit_8", "the same by a composition of order 8", 8),
       tao("tao_2", "Tao's method: two copies of the state, bound by a spring", 2),
       tao("tao_4", "the same by a composition of order 4", 4),
-      tao("tao_6", "the same by a composition of order 6", 6),
-      tao("tao_8", "the same by a composition of order 8", 8),
   };
   return list;
 }

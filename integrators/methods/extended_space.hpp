@@ -59,9 +59,8 @@ struct TaoOptions {
   static constexpr auto describe() {
     return part<TaoOptions>(
         "tao", "how the copies of extended phase space are bound, and the composition of a step",
-        field<&TaoOptions::composition>(
-            "composition", "1",
-            "symmetric composition of the method's order; default: verlet, yoshida_4, kahan_li_6_s9, kahan_li_8_s17"),
+        field<&TaoOptions::composition>("composition", "1",
+                                        "symmetric composition of the method's order; default: verlet, yoshida_4"),
         field<&TaoOptions::omega>("omega", "1/time",
                                   "the copies turn about each other at twice this rate; default: twice the largest "
                                   "second derivative of H at the start, of particles 8 times the fastest rate"));

@@ -86,6 +86,7 @@ TEST_CASE("methods in extended space have the order of their composition", "[ext
   for (const int order : {2, 4, 6, 8}) {
     for (const char* family : {"tao_", "semiexplicit_"}) {
       const std::string name = family + std::to_string(order);
+      if (methods::find(name) == nullptr) continue;  // of Tao's there are two orders
       CAPTURE(name);
       MethodChoice choice = method(name);
       if (name[0] == 't') choice.options.own = TaoOptions{.omega = 12};
@@ -118,7 +119,7 @@ TEST_CASE("the semiexplicit method keeps quadratic invariants, Tao's nearly", "[
 }
 
 TEST_CASE("geodesics of Schwarzschild and Kerr come to where extended precision has them", "[extended_space]") {
-  for (const char* name : {"semiexplicit_8", "tao_8", "gauss_8"}) {
+  for (const char* name : {"semiexplicit_8", "gauss_8"}) {
     CAPTURE(name);
     const MethodChoice choice = method(name, MethodOptions{});
     const auto fixed = [&] {
