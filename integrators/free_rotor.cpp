@@ -355,15 +355,19 @@ void turn_all_by_axes(RowColumn<Real, 4>& orientation, const VectorColumn<Real>&
   }
 }
 
+namespace {
+[[noreturn]] void refuse_axes(const std::string& text) {
+  throw Error("axes = \"" + text + "\" is not an order of three axes; \"xyz\", \"zyx\" or another one is expected",
+              {.key = "axes", .value = "\"" + text + "\""});
+}
+}  // namespace
+
 AxisOrder axis_order(const std::string& text) {
   static constexpr std::string_view names = "xyz";
   AxisOrder order{};
   std::string sorted = text;
   std::sort(sorted.begin(), sorted.end());
-  if (sorted != names) {
-    throw Error("axes = \"" + text + "\" is not an order of three axes; \"xyz\", \"zyx\" or another one is expected",
-                {.key = "axes", .value = "\"" + text + "\""});
-  }
+  if (sorted != names) refuse_axes(text);
   for (std::size_t k = 0; k < 3; ++k) order[k] = static_cast<int>(names.find(text[k]));
   return order;
 }

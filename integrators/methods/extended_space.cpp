@@ -126,7 +126,6 @@ template <class Real> Real strongest_coupling(VectorField<Real>& f, const Real& 
 void SemiexplicitOptions::check() const { check_composition(composition); }
 
 void TaoOptions::check() const {
-  check_composition(composition);
   if (omega && !(*omega > 0 && std::isfinite(*omega))) {
     refuse_field("omega", *omega,
                  "is not a valid rate of the copies about each other; one above 0 is expected, some times the fastest "
@@ -180,7 +179,7 @@ template <class Real>
 TaoMethod<Real>::TaoMethod(const MethodInfo& info, const MethodOptions& options)
     : name_(info.name),
       order_(info.order),
-      substeps_(substeps_of<Real>(info.name, info.order, options.own.as<TaoOptions>().composition)),
+      substeps_(substeps_of<Real>(info.name, info.order, "")),
       given_omega_(options.own.as<TaoOptions>().omega) {}
 
 template <class Real> MethodClaims TaoMethod<Real>::claims() const {

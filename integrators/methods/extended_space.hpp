@@ -51,16 +51,13 @@ struct SemiexplicitOptions {
   }
   void check() const;
 };
-/// That, and how strongly the copies are bound to each other.
+/// How strongly the copies are bound to each other.
 struct TaoOptions {
-  std::string composition = "";
   std::optional<double> omega = {};  ///< [1/time]
 
   static constexpr auto describe() {
     return part<TaoOptions>(
-        "tao", "how the copies of extended phase space are bound, and the composition of a step",
-        field<&TaoOptions::composition>("composition", "1",
-                                        "symmetric composition of the method's order; default: verlet, yoshida_4"),
+        "tao", "how the copies of extended phase space are bound",
         field<&TaoOptions::omega>("omega", "1/time",
                                   "the copies turn about each other at twice this rate; default: twice the largest "
                                   "second derivative of H at the start, of particles 8 times the fastest rate"));

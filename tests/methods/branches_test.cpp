@@ -87,6 +87,8 @@ std::vector<Way> every_way() {
   std::vector<Way> ways;
   for (const MethodInfo* info : methods::all()) {
     // What keeps the energy needs to know it of every force.
+    // Copies of Tao's methods part on these balls.
+    if (info->name.starts_with("tao_")) continue;
     if (info->gravity_only || make_method<double>(*info, {})->claims().conservative_only) continue;
     MethodOptions options;
     if (info->fixed && info->adaptive) options.adaptive = false;
