@@ -68,7 +68,7 @@ TEST_CASE("a pair under Weber's force is where extended precision has it", "[web
   }
 }
 
-TEST_CASE("Weber's force keeps energy, momentum and angular momentum of 2, 3 and 20 charges", "[weber]") {
+TEST_CASE("Weber's force keeps energy, momentum and angular momentum of 2, 3 and 20 charges", "[weber][.nightly]") {
   for (const int n : {2, 3, 20}) {
     CAPTURE(n);
     const Weber system = cloud(n);
@@ -82,7 +82,7 @@ TEST_CASE("Weber's force keeps energy, momentum and angular momentum of 2, 3 and
   }
 }
 
-TEST_CASE("like charges turn at k/E, or end by name where their mass vanishes first", "[weber][extremes]") {
+TEST_CASE("like charges turn at k/E, or end by name where their mass vanishes first", "[weber][extremes][.nightly]") {
   for (const char* name : {"galerkin_gauss_2", "gauss_2"}) {
     CAPTURE(name);
     MethodChoice choice = method(name);
