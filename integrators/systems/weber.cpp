@@ -68,4 +68,7 @@ std::vector<std::string> Weber::names() const {
   return all;
 }
 
+template class LagrangianMotion<Weber, double>;
+template class LagrangianMotion<Weber, Quad>;
+
 }  // namespace noether

@@ -3,7 +3,7 @@
 
 #include "engine/description.hpp"
 #include "engine/sums.hpp"
-#include "integrators/vector_field.hpp"
+#include "integrators/variational/lagrangian_system.hpp"
 
 #include <cmath>
 #include <string>
@@ -69,5 +69,9 @@ struct Weber {
     return coupling / sqrt(square) * (Real(1) + rate * along * along / square);
   }
 };
+
+// Its motion, compiled once: second derivatives of L are nested dual numbers.
+extern template class LagrangianMotion<Weber, double>;
+extern template class LagrangianMotion<Weber, Quad>;
 
 }  // namespace noether

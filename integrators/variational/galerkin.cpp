@@ -63,7 +63,8 @@ template <class Real> void Galerkin<Real>::bind(const VectorField<Real>& f) {
     throw SchemeMismatch(fmt::format("method '{}' cannot step '{}': {}; use an explicit method for y' = f", name_,
                                      field.name, too_many_unknowns(rows)));
   }
-  for (Vector<Real>* v : {&q0_, &p0_, &v0_}) v->resize(n_);
+  for (Vector<Real>* v : {&q0_, &p0_, &v0_, &v1_}) v->resize(n_);
+  ended_.resize(0);
   for (Vector<Real>* v : {&points_, &guess_, &before_, &residual_, &update_}) v->resize(rows);
   q_.assign(nodes_, Vector<Real>(n_));
   v_.assign(nodes_, Vector<Real>(n_));
@@ -81,6 +82,8 @@ template <class Real> StepResult Galerkin<Real>::step(VectorField<Real>& f, cons
   p0_ = y.tail(n_);
   if (second_order_) {
     v0_ = p0_;
+  } else if (ended_.size() == y.size() && ended_ == y && ended_at_ == t) {
+    v0_ = v1_;
   } else {
     made.failure = LagrangianField<Real>::behind(f)->velocity(t, q0_, p0_, v0_);
     if (made.failure) return made;
@@ -95,6 +98,13 @@ template <class Real> StepResult Galerkin<Real>::step(VectorField<Real>& f, cons
     y[n_ + a] = p0_[a] + Real(h) * impulse;
   }
   h_ = h;
+  if (second_order_) return made;
+  // A state without a velocity is no end of a step; one that has it begins the next.
+  ended_ = y;
+  ended_at_ = t + Real(h);
+  q_end_ = y.head(n_);
+  p_end_ = y.tail(n_);
+  made.failure = LagrangianField<Real>::behind(f)->velocity(ended_at_, q_end_, p_end_, v1_);
   return made;
 }
 

@@ -75,6 +75,8 @@ template <class Real> class Galerkin final : public Method<Real> {
   Vector<Real> residual_, update_;            ///< shape (s n)
   LagrangianTangent<Real> tangent_;
   Matrix<Real> matrix_;
+  Vector<Real> ended_, q_end_, p_end_, v1_;  ///< where the last step ended, and its velocity
+  Real ended_at_ = Real(0);
   DenseFactors<Real> factors_;
   std::optional<Jacobian<Real>> jacobian_;  ///< of forces, once a step has asked for it
   Vector<Real> state_;                      ///< (q, v) of one node

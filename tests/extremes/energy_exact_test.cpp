@@ -103,8 +103,9 @@ TEST_CASE("line integrals pass the pericenter of a needle by short steps of high
       check_end(run, outcome);
       CHECK(outcome.kind == Outcome::Kind::solver_failure);
       CHECK(std::abs(outcome.time - turn / 2) < 2 * turn / static_cast<double>(steps));
-      // A pericenter between two nodes is not always seen: the last step may lose some of the energy.
-      CHECK(run.energy.worst() < 1e-5);
+      // A pericenter between two nodes is not always seen (docs/theory/energy_exact.md): 5.7e-7 of hbvm_2 in its last
+      // step, 1e-10 of hbvm_3.
+      CHECK(run.energy.worst() < (std::string_view(name) == "hbvm_2" ? 1e-6 : 1e-9));
     }
   }
   WatchedRun close = on_ellipse("hbvm_4", 0.99, 10000);
