@@ -18,9 +18,10 @@ namespace noether {
 namespace {
 
 /// Kinds of parts in the order of the page, with their headings.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 11> headings = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> headings = {{
     {"hamiltonian", "Hamiltonians"},
     {"force", "Forces"},
+    {"field", "Fields"},
     {"thermostat", "Thermostats"},
     {"constraint", "Constraints"},
     {"system", "Systems"},

@@ -44,7 +44,7 @@ std::vector<std::pair<std::string, PartInfo>> described_parts(const Parts& parts
   for (auto& part : other_parts()) all.push_back(std::move(part));
   for (const BuilderKind& kind : builders()) all.emplace_back("builder", kind.info);
   for (const auto& kind : parts.forces()) {
-    all.emplace_back("force", kind.particles > 0 ? with_particles(kind.info, kind.particles) : kind.info);
+    all.emplace_back(kind.field ? "field" : "force", kind.particles > 0 ? with_particles(kind.info, kind.particles) : kind.info);
   }
   for (const auto& kind : parts.constraints()) {
     all.emplace_back("constraint", kind.of_structure ? kind.info : with_particles(kind.info, kind.particles));
@@ -60,6 +60,7 @@ std::vector<std::pair<std::string, PartInfo>> described_parts(const Parts& parts
 std::string table_of(const std::string& kind) {
   if (kind == "builder") return "[particles], as type = \"NAME\"";
   if (kind == "force") return "[[hamiltonian.force]]";
+  if (kind == "field") return "[[hamiltonian.field]]";
   if (kind == "thermostat") return "[hamiltonian.thermostat]";
   if (kind == "start") return "[minimize]";
   if (kind == "constraint") {

@@ -187,7 +187,7 @@ void sort_parts(const Scene& scene, Explanation& e) {
   const std::vector<SceneForce>& inside = scene.hamiltonian.splitting.own;
   for (const auto& kind : parts.forces()) {
     const bool own = std::any_of(inside.begin(), inside.end(), [&](const auto& f) { return f.name == kind.info.name; });
-    if (!own) leave_out("force " + kind.info.name);
+    if (!own) leave_out((kind.field ? "field " : "force ") + kind.info.name);
   }
   for (const auto& kind : parts.constraints()) leave_out("constraint " + kind.info.name);
   for (const auto& kind : parts.decorators()) leave_out("decorator " + kind.info.name);

@@ -99,8 +99,10 @@ RunCaption caption_of(const SceneValue& scene, const std::filesystem::path& file
   }
   caption.time = readable_time(time_unit, longest);
   caption.energy_changes = value_at(scene, {"hamiltonian", "thermostat"}) != nullptr;
-  for (const SceneValue* force : tables_at(scene, {"hamiltonian", "force"})) {
-    caption.energy_changes |= is_driven(*force, parts);
+  for (const char* key : {"force", "field"}) {
+    for (const SceneValue* force : tables_at(scene, {"hamiltonian", key})) {
+      caption.energy_changes |= is_driven(*force, parts);
+    }
   }
   return caption;
 }

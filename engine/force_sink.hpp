@@ -139,6 +139,32 @@ template <class Real> class ForceSink {
   void torque(Index i, const Vec3<Real>& t) {
     if (torques_ != nullptr) torques_->add(i, t);
   }
+  /// Lets fields write how they turn velocities, v' = v x rate, into a column, set to zero here [1/time]: a sink without
+  /// one gets v x rate among the accelerations.
+  void set_gyrations(VectorColumn<Real>& rates) {
+    gyrations_ = &rates;
+    rates.set_zero();
+  }
+  /// Adds to the acceleration of particle `i` what a magnetic field makes of its velocity, v_i x `rate`, with
+  /// rate = q B/m [1/time]; a tracer feels none.
+  void gyration(Index i, const Vec3<Real>& rate) {
+    if (gyrations_ != nullptr) {
+      gyrations_->add(i, rate);
+    } else {
+      acceleration(i, cross(system_.velocities()[i], rate));
+    }
+  }
+  /// Lets fields write q A, the part of the canonical momenta that is theirs, into a column, set to zero here
+  /// [mass length/time]; those without a vector potential `fail`.
+  void set_field_momenta(VectorColumn<Real>& momenta) {
+    field_momenta_ = &momenta;
+    momenta.set_zero();
+  }
+  bool wants_field_momenta() const { return field_momenta_ != nullptr; }
+  /// Adds q A of particle `i` [mass length/time].
+  void field_momentum(Index i, const Vec3<Real>& p) {
+    if (field_momenta_ != nullptr) field_momenta_->add(i, p);
+  }
   /// Lets secants add by how much they change with the second state (forces/secant_tangent.hpp).
   void set_tangent(SecantTangent<Real>* tangent) { tangent_ = tangent; }
   /// Null where nobody asked for it.
@@ -176,6 +202,8 @@ template <class Real> class ForceSink {
   Workspace* own_ = nullptr;                ///< of the force that is summed
   std::unique_ptr<Workspace> lost_;         ///< of a force to which nobody lends one: gone with the sink
   VectorColumn<Real>* torques_ = nullptr;
+  VectorColumn<Real>* gyrations_ = nullptr;
+  VectorColumn<Real>* field_momenta_ = nullptr;
   SecantTangent<Real>* tangent_ = nullptr;
   double kick_ = 0;
   char letter_ = 0;  ///< 0: of all kicks
@@ -196,6 +224,7 @@ struct ForceClaims {
   bool energy = true;  ///< it is the gradient of a potential and reports it
   bool virial = true;  ///< it reports its virial
   bool velocity_dependent = false;
+  bool gyrates = false;  ///< its dependence on velocities is v x rate alone, which it tells by `gyration`
   bool time_dependent = false;
   bool dissipative = false;
   bool keeps_momentum = true;           ///< its sum over all particles is 0

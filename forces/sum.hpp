@@ -21,7 +21,9 @@ inline std::optional<bool> one_says_so(std::optional<bool> a, std::optional<bool
 inline void merge(ForceClaims& all, const ForceClaims& one) {
   all.energy = all.energy && one.energy;
   all.virial = all.virial && one.virial;
+  const bool gyrate = (!all.velocity_dependent || all.gyrates) && (!one.velocity_dependent || one.gyrates);
   all.velocity_dependent = all.velocity_dependent || one.velocity_dependent;
+  all.gyrates = all.velocity_dependent && gyrate;
   all.time_dependent = all.time_dependent || one.time_dependent;
   all.dissipative = all.dissipative || one.dissipative;
   all.keeps_momentum = all.keeps_momentum && one.keeps_momentum;

@@ -104,7 +104,8 @@ void check_class(const Scheme& scheme, const HamiltonianClaims& claims, const st
                     : "a composition of its steps such as 'yoshida_4', or a scheme made for it such as "
                       "'abah_8_6_4'"));
   }
-  if (scheme.scheme_class == SchemeClass::rkn && !claims.quadratic_kinetic) {
+  const bool loses = scheme.order.any_splitting() < scheme.order.classical;
+  if (scheme.scheme_class == SchemeClass::rkn && !claims.quadratic_kinetic && loses) {
     throw SchemeMismatch(fmt::format(
         "scheme '{}' is a Runge-Kutta-Nystroem splitting and keeps its order only where {{B,{{B,{{B,A}}}}}} = 0, which "
         "'{}' does not guarantee; use a general scheme such as 'blanes_moan_s10'",

@@ -74,6 +74,8 @@ constexpr std::array aliases = {
     Alias{"Hartree", "hartree"},
     Alias{"E_h", "hartree"},
     Alias{"newton", "N"},
+    Alias{"volt", "V"},
+    Alias{"tesla", "T"},
     Alias{"pascal", "Pa"},
     Alias{"millisecond", "ms"},
     Alias{"microsecond", "us"},
@@ -87,6 +89,9 @@ constexpr std::array aliases = {
 constexpr units::Ratio of_msun(std::int64_t digits, int exponent) {
   return units::find("Msun")->si * units::decimal(digits, exponent) / units::decimal(13271244);
 }
+
+constexpr Dimension voltage = dimensions::energy / dimensions::charge;
+constexpr Dimension magnetic_field{.mass = 1, .time = -1, .charge = -1};
 
 /// Units that texts alone have: programs ask `unit_value` for them. Masses of planets are to Msun as the nominal GM
 /// are, 3.986004e14 and 1.2668653e17 to 1.3271244e20 m^3/s^2; radii are nominal, those of planets equatorial; the
@@ -117,6 +122,15 @@ constexpr std::array text_units = {
     units::Definition{"meV", "", dimensions::energy, units::decimal(1602176634, -31)},
     units::Definition{"hartree", "", dimensions::energy, units::decimal(43597447222071, -31)},
     units::Definition{"erg", "", dimensions::energy, units::decimal(1, -7)},
+    units::Definition{"keV", "", dimensions::energy, units::decimal(1602176634, -25)},
+    units::Definition{"MeV", "", dimensions::energy, units::decimal(1602176634, -22)},
+    units::Definition{"GeV", "", dimensions::energy, units::decimal(1602176634, -19)},
+    units::Definition{"V", "", voltage, units::decimal(1)},
+    units::Definition{"kV", "", voltage, units::decimal(1, 3)},
+    units::Definition{"MV", "", voltage, units::decimal(1, 6)},
+    units::Definition{"T", "", magnetic_field, units::decimal(1)},
+    units::Definition{"mT", "", magnetic_field, units::decimal(1, -3)},
+    units::Definition{"uT", "", magnetic_field, units::decimal(1, -6)},
     units::Definition{"N", "", dimensions::force, units::decimal(1)},
     units::Definition{"Pa", "", dimensions::pressure, units::decimal(1)},
     units::Definition{"bar", "", dimensions::pressure, units::decimal(1, 5)},

@@ -22,11 +22,11 @@ namespace {
 constexpr std::int64_t once = std::int64_t{1} << 62;
 
 void attach_monitors(Simulation<double>& sim, const Scene& scene) {
-  const ConstraintSet constraints = constraints_of(scene);
-  const std::vector<Symmetry> symmetries = scene.system ? scene.system->symmetries : std::vector<Symmetry>();
+  Watched watched{constraints_of(scene), scene.system ? scene.system->symmetries : std::vector<Symmetry>(), {}};
+  watched.charges = {forces_of(scene).terms(), scene.hamiltonian.splitting.c};
   for (const SceneWatch& watch : scene.watches) {
     if (watch.kind == SceneWatch::Kind::monitor) {
-      detail::attach(sim, watch.cadence, watch.monitor.make(constraints, symmetries));
+      detail::attach(sim, watch.cadence, watch.monitor.make(watched));
     }
   }
 }
@@ -146,6 +146,12 @@ AnyHamiltonian<double> SceneHamiltonian::make(const ParticleSystem<double>& part
   for (const SceneForce& force : forces) {
     if (force.letter) continue;
     if (force.force.claims().velocity_dependent && !splitting.claims().velocity_forces) {
+      if (force.force.claims().gyrates) {
+        throw SchemeMismatch(
+            fmt::format("field '{}' turns velocities, which no kick of {} does; use the Hamiltonian 'charged_particles', "
+                        "or a method for y' = f, such as 'gauss_8'",
+                        force.name, splitting.name));
+      }
       throw SchemeMismatch(
           fmt::format("force '{}' depends on velocities, so no kick is its exact flow; use a method for "
                       "y' = f, such as 'gauss_radau_15' or 'dop853'",
@@ -201,7 +207,8 @@ std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
   }
   ForceField<double> kicks, letters;
   for (const SceneForce& force : scene.hamiltonian.forces) {
-    const bool beside = force.letter || force.force.claims().velocity_dependent;  // no part of the splitting
+    const bool beside = force.letter || (force.force.claims().velocity_dependent &&
+                                         !splitting.claims().velocity_forces);  // no part of the splitting
     (beside ? letters : kicks).add(force.force);
   }
   return std::make_unique<HamiltonianMotion<double>>(splitting.make(std::move(kicks)), std::move(letters),

@@ -84,12 +84,16 @@ class PathCollector {
     if (key == "particles") add_fields(keys, builders(), type);
     if (key == "hamiltonian") {
       add_fields(keys, parts_.hamiltonians(), type);
-      keys.insert(keys.end(), {"type", "G", "force", "constraint", "thermostat", "neighbors"});
+      keys.insert(keys.end(), {"type", "G", "force", "field", "constraint", "thermostat", "neighbors"});
       for_each_field<RotatingOptions>([&](const auto& f) { keys.emplace_back(f.name); });
     }
     if (key == "force") {
       add_fields(keys, parts_.forces(), type);
       keys.insert(keys.end(), {"type", "kick"});
+    }
+    if (key == "field") {
+      add_fields(keys, parts_.forces(), type);
+      keys.emplace_back("type");
     }
     if (key == "minimize") for_each_field<MinimizeOptions>([&](const auto& f) { keys.emplace_back(f.name); });
     if (key == "neighbors") for_each_field<NeighborOptions>([&](const auto& f) { keys.emplace_back(f.name); });

@@ -187,9 +187,11 @@ class SceneReader {
       }
     };
     take(hamiltonian, parts_.hamiltonians());
-    const SceneValue* forces = hamiltonian.find("force");
-    const auto* list = forces != nullptr ? forces->get<SceneValue::Array>() : nullptr;
-    for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) take((*list)[k], parts_.forces());
+    for (const char* key : {"force", "field"}) {
+      const SceneValue* forces = hamiltonian.find(key);
+      const auto* list = forces != nullptr ? forces->get<SceneValue::Array>() : nullptr;
+      for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) take((*list)[k], parts_.forces());
+    }
     return all;
   }
 
@@ -200,9 +202,9 @@ class SceneReader {
     SceneValue& effective = scene_.effective.put("hamiltonian", SceneValue::table());
     effective.put("type", SceneValue::of(type, reader.line("type")));
     effective.put("G", context_.G ? *context_.G : SceneValue::of(scene_.units->G));
-    const auto forces = tables_of(reader, "force"), constraints = tables_of(reader, "constraint");
+    const auto forces = tables_of(reader, "force"), fields = tables_of(reader, "field"), constraints = tables_of(reader, "constraint");
     const SceneValue *thermostat = reader.find("thermostat"), *neighbors = reader.find("neighbors");
-    for (const char* key : {"type", "G", "force", "constraint", "rotor", "axes"}) reader.find(key);
+    for (const char* key : {"type", "G", "force", "field", "constraint", "rotor", "axes"}) reader.find(key);
     made.splitting = kind->read(reader);
     reader.finish();
     for (const auto& [key, value] : *made.splitting.effective.get<SceneValue::Table>()) {
@@ -210,16 +212,18 @@ class SceneReader {
     }
     read_rotor(reader, effective);
     check_splitting(reader, constraints);
-    if (kind->needs_forces && forces.empty() && constraints.empty() && !has_bodies(scene_.particles)) {
+    if (kind->needs_forces && forces.empty() && fields.empty() && constraints.empty() && !has_bodies(scene_.particles)) {
       reader.fail("type", fmt::format("{} has no force, so nothing would move anything; add a [[hamiltonian.force]] "
                                       "table",
                                       type));
     }
     // Before the forces: what is held is no longer for the force 'bonded'.
-    SceneValue::Array list, held;
+    SceneValue::Array list, listed_fields, held;
     if (!constraints.empty()) held = read_constraints(context_, constraints, parts_, scene_);
-    for (const SceneValue* force : forces) read_force(*force, list);
+    for (const SceneValue* force : forces) read_force(*force, "force", list);
+    for (const SceneValue* field : fields) read_force(*field, "field", listed_fields);
     if (!list.empty()) effective.put("force", SceneValue::of(std::move(list)));
+    if (!listed_fields.empty()) effective.put("field", SceneValue::of(std::move(listed_fields)));
     if (thermostat != nullptr) effective.put("thermostat", read_thermostat(context_, *thermostat, parts_, scene_));
     if (neighbors != nullptr) effective.put("neighbors", read_neighbors(*neighbors));
     if (!held.empty()) effective.put("constraint", SceneValue::of(std::move(held)));
@@ -311,10 +315,14 @@ class SceneReader {
     return effective;
   }
 
-  void read_force(const SceneValue& table, SceneValue::Array& list) {
-    const std::string path = fmt::format("hamiltonian.force.{}", list.size());
-    const auto [kind, type] = kind_of_part(context_, table, path, "force", parts_.forces(), {});
-    TableReader reader(context_, table, fmt::format("force '{}'", type), path);
+  /// @param what  force or field: the list in which it stands
+  void read_force(const SceneValue& table, const std::string& what, SceneValue::Array& list) {
+    const std::string path = fmt::format("hamiltonian.{}.{}", what, list.size());
+    const bool field = what == "field";
+    refuse_other_list(table, path, field);
+    const std::vector<Parts::ForceKind> kinds = forces_in(field);
+    const auto [kind, type] = kind_of_part(context_, table, path, what, kinds, {});
+    TableReader reader(context_, table, fmt::format("{} '{}'", what, type), path);
     SceneValue effective = SceneValue::table();
     SceneForce force = noether::read_force(reader, *kind, &scene_.particles, effective);
     check_force_beside(reader, *kind, force, scene_.hamiltonian, parts_);
@@ -330,6 +338,26 @@ class SceneReader {
     }
     list.push_back(effective);
     scene_.hamiltonian.forces.push_back(std::move(force));
+  }
+
+  /// @throws SceneError  for a force among the fields, and for a field among the forces
+  void refuse_other_list(const SceneValue& table, const std::string& path, bool field) const {
+    const SceneValue* type = table.find("type");
+    const std::string* name = type != nullptr ? type->get<std::string>() : nullptr;
+    for (const Parts::ForceKind& kind : parts_.forces()) {
+      if (name == nullptr || kind.info.name != *name || kind.field == field) continue;
+      const char* other = field ? "force" : "field";
+      TableReader(context_, table, fmt::format("{} '{}'", other, *name), path)
+          .fail("type", fmt::format("'{}' is a {}; write [[hamiltonian.{}]]", *name, other, other));
+    }
+  }
+  /// Fields, or the forces that are none.
+  std::vector<Parts::ForceKind> forces_in(bool field) const {
+    std::vector<Parts::ForceKind> kinds;
+    for (const Parts::ForceKind& kind : parts_.forces()) {
+      if (kind.field == field) kinds.push_back(kind);
+    }
+    return kinds;
   }
 
   /// Whether frames are to have the sites of bodies. Only where they are, the effective scene says so: scenes from

@@ -6,6 +6,7 @@
 #include "constraints/surfaces.hpp"
 #include "forces/anharmonic_chain.hpp"
 #include "forces/bonded.hpp"
+#include "forces/electromagnetic_fields.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
 #include "forces/gr_potential.hpp"
@@ -22,6 +23,7 @@
 #include "forces/traction.hpp"
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
+#include "integrators/charged_particles.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
@@ -47,6 +49,7 @@
 #include "integrators/wisdom_holman.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/charges.hpp"
 #include "monitors/dihedrals.hpp"
 #include "monitors/momentum_map.hpp"
 #include "monitors/monitors.hpp"
@@ -154,6 +157,7 @@ Parts standard_parts() {
   Parts parts;
   parts.add_hamiltonian<KineticPotentialOptions>();
   parts.add_hamiltonian<WisdomHolmanOptions>();
+  parts.add_hamiltonian<ChargedParticlesOptions>();
   parts.add_thermostat<LangevinOptions>();
   parts.add_thermostat<VelocityRescalingOptions>();
   parts.add_force<Gravity>();
@@ -179,6 +183,14 @@ Parts standard_parts() {
   parts.add_force<Traction>();
   parts.add_force<LinearDrag>();
   parts.add_force<Tides>();
+  parts.add_field<UniformElectromagnetic>();
+  parts.add_field<GradientField>();
+  parts.add_field<MagneticMirror>();
+  parts.add_field<MagneticDipole>();
+  parts.add_field<Tokamak>();
+  parts.add_field<PenningTrap>();
+  parts.add_field<PlaneWave>();
+  parts.add_field<RadioFrequencyGap>();
   parts.add_constraint<Distance>();
   parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read, Drawn::chain});
   parts.add_constraint<Angle>();
@@ -210,6 +222,8 @@ Parts standard_parts() {
   parts.add_monitor<VelocityAutocorrelation>();
   parts.add_monitor<Variables>();
   parts.add_monitor<MomentumMap>();
+  parts.add_monitor<CanonicalMomentum>();
+  parts.add_monitor<MagneticMoment>();
   parts.add_monitor<ConstraintResidual>();
   parts.add_monitor<ShadowHamiltonian<double>>();
   parts.add_stop<Escape>();

@@ -6,11 +6,13 @@
 #include "constraints/structure_constraints.hpp"
 #include "engine/any_force.hpp"
 #include "engine/simulation.hpp"
+#include "forces/electromagnetic_field.hpp"
 #include "forces/sum.hpp"
 #include "integrators/hamiltonian_system.hpp"
 #include "integrators/lie/group_system.hpp"
 #include "integrators/method.hpp"
 #include "integrators/variational/lagrangian_system.hpp"
+#include "monitors/charges.hpp"
 #include "scene/fields.hpp"
 
 #include <algorithm>
@@ -82,6 +84,7 @@ struct SceneSplitting {
   std::string name;
   SceneValue effective;         ///< its own keys, defaults included
   SplittingClaims claims;       ///< without forces: `claims()`
+  std::optional<double> c = {};  ///< speed of light, where its particles are relativistic [length/time]
   bool only_forces = false;     ///< p^2/2m and forces are all of it: methods for y' = f serve it too
   std::vector<SceneForce> own;  ///< those it has in itself, as such methods take them
   std::function<AnyHamiltonian<double>(ForceField<double>)> make;
@@ -106,12 +109,18 @@ struct SceneConstraint {
   }
 };
 
+/// What monitors may ask of a run beside its particles: constraints, symmetries of its system, fields of charges.
+struct Watched {
+  ConstraintSet constraints;
+  std::vector<Symmetry> symmetries;
+  ChargeMotion charges;
+};
+
 /// A monitor as a scene asked for it.
 struct SceneMonitor {
   std::string name;
   SceneValue effective;
-  /// It may watch the constraints of the run, and symmetries of its system.
-  std::function<AnyMonitor<double>(const ConstraintSet&, const std::vector<Symmetry>&)> make;
+  std::function<AnyMonitor<double>(const Watched&)> make;
   /// What it costs beside the run, in words, by coordinates and cadence [steps]; empty for what is not worth a word.
   std::function<std::string(Index, std::int64_t)> cost;
 };
@@ -202,6 +211,7 @@ class Parts {
     ForceClaims claims = {};               ///< of the force with its defaults
     std::string only_once = {};            ///< why it does not stand twice in a scene; empty: it may
     bool about_heaviest = false;           ///< it takes particle 0 for the heaviest one
+    bool field = false;                    ///< of charges: it stands in [[hamiltonian.field]]
     std::string masses_key = {};           ///< its flag of whether masses attract each other in it; empty: it has none
   };
   struct ConstraintKind {
@@ -272,9 +282,12 @@ class Parts {
     if constexpr (requires { F::only_once; }) kind.only_once = F::only_once;
     if constexpr (requires { F::about_heaviest; }) kind.about_heaviest = F::about_heaviest;
     if constexpr (requires { F::masses_key; }) kind.masses_key = F::masses_key;
+    if constexpr (requires { F::is_field; }) kind.field = F::is_field;
     put(forces_, std::move(kind));
     return *this;
   }
+  /// The same for a field that acts on charges (forces/electromagnetic_field.hpp), in [[hamiltonian.field]].
+  template <class F> Parts& add_field() { return add_force<InField<F>>(); }
 
   /// Makes constraint `C` known by the name it describes itself with; one of the same name is replaced.
   template <Constraint C> Parts& add_constraint() {
@@ -377,10 +390,18 @@ class Parts {
     }
     if constexpr (requires { part.forces(); }) {
       made.only_forces = true;
+      if constexpr (requires { part.only_forces(); }) made.only_forces = part.only_forces();
       std::apply([&](const auto&... own) { (made.own.push_back(scene_force(own, set_fields(reader, own))), ...); },
                  part.forces());
     }
     detail::check_fields(reader, part);
+    if constexpr (requires { part.light(*reader.context().units); }) {
+      try {
+        made.c = part.light(*reader.context().units);
+      } catch (const Error& error) {
+        reader.refuse(error);
+      }
+    }
     made.claims = SplittingClaims([make = made.make] { return make({}).claims(); });
     return made;
   }
@@ -482,10 +503,11 @@ class Parts {
     read_part(reader, monitor);
     SceneMonitor made{std::string(part_name<M>()), SceneValue::table(), {}, {}};
     put_fields(reader, monitor, made.effective);
-    made.make = [monitor](const ConstraintSet& constraints, const std::vector<Symmetry>& symmetries) {
+    made.make = [monitor](const Watched& of) {
       M watching = monitor;
-      if constexpr (requires { watching.watch(constraints); }) watching.watch(constraints);
-      if constexpr (requires { watching.watch(symmetries); }) watching.watch(symmetries);
+      if constexpr (requires { watching.watch(of.constraints); }) watching.watch(of.constraints);
+      if constexpr (requires { watching.watch(of.symmetries); }) watching.watch(of.symmetries);
+      if constexpr (requires { watching.watch(of.charges); }) watching.watch(of.charges);
       return AnyMonitor<double>(std::move(watching));
     };
     if constexpr (requires { monitor.cost(Index(1), std::int64_t{1}); }) {

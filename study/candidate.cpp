@@ -24,8 +24,11 @@ bool is_word(std::string_view name) {
 
 const Parts::HamiltonianKind& plain(const Scene& scene) { return scene.parts->hamiltonians().front(); }
 bool is_plain(const Scene& scene) { return scene.hamiltonian.splitting.name == plain(scene).info.name; }
-/// Whether all of its Hamiltonian can be written as forces over the plain one.
-bool may_be_joined(const Scene& scene) { return scene.hamiltonian.splitting.only_forces && !is_plain(scene); }
+/// Whether its Hamiltonian has forces in itself, and can be written as these over the plain one.
+bool may_be_joined(const Scene& scene) {
+  const SceneSplitting& splitting = scene.hamiltonian.splitting;
+  return splitting.only_forces && !splitting.own.empty();
+}
 
 /// The scene's Hamiltonian without its splitting: what that has in itself becomes forces as all others.
 void join_parts(Scene& scene) {
@@ -122,7 +125,7 @@ std::vector<Candidate> default_opponents(const Scene& scene) {
   } else {
     if (split) names.insert(names.end(), {"aba_10_6_4", "verlet_aba", "verlet@" + plain(scene).info.name});
     if (!split) names.insert(names.end(), {"verlet", "yoshida_4"});
-    const std::string plainly = scene.hamiltonian.splitting.only_forces ? "@" + plain(scene).info.name : "";
+    const std::string plainly = split || is_plain(scene) ? "@" + plain(scene).info.name : "";
     for (const char* name : {"blanes_moan_s6", "srkn14a", "kahan_li_8_s17"}) names.push_back(name + plainly);
     const bool liquid = scene.particles.box().is_periodic() || scene.particles.size() > most_bodies;
     if (liquid) {  // the others are for few bodies and errors near rounding

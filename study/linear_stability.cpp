@@ -305,7 +305,8 @@ int LinearTheory::resonance_at(double z) const {
 std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, const Mode& mode) {
   // Of a splitting of its own nobody knows what it makes of a mode.
   const SceneSplitting& splitting = scene.hamiltonian.splitting;
-  const bool drifts = scene.system || who.joined || (splitting.only_forces && splitting.own.empty());
+  const bool drifts = scene.system || who.joined ||
+                      (splitting.only_forces && splitting.own.empty() && !splitting.claims().velocity_forces);
   if (!(mode.scale() > 0) || !drifts || !scene.integrator.decorators.empty()) return {};
   const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
   if (made.integrator.classical) {

@@ -56,7 +56,8 @@ WideScene wide_scene(const Scene& scene) {
     const auto in_quad = force.force.in_quad();
     if (!in_quad) return false;
     all.add(*in_quad);
-    (force.letter || force.force.claims().velocity_dependent ? beside : kicks).add(*in_quad);
+    const bool kicks_not = force.force.claims().velocity_dependent && !h.splitting.claims().velocity_forces;
+    (force.letter || kicks_not ? beside : kicks).add(*in_quad);
     return true;
   };
   for (const std::vector<SceneForce>* list : {&h.splitting.own, &h.forces}) {
@@ -73,6 +74,8 @@ WideScene wide_scene(const Scene& scene) {
     wide.field = std::make_unique<ForceMotion<ForceField<Quad>, Quad>>(std::move(all));
   } else if (!h.splitting.make_wide) {
     wide.reason = fmt::format("hamiltonian '{}' is written for doubles only", h.splitting.name);
+  } else if (!h.splitting.claims().inertial && h.splitting.claims().velocity_forces && beside.terms().empty()) {
+    wide.splitting = h.splitting.make_wide(std::move(kicks));
   } else if (!h.splitting.claims().inertial) {
     wide.reason =
         fmt::format("hamiltonian '{}' uses its own coordinates, which a reference does not support", h.splitting.name);

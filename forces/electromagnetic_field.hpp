@@ -1,0 +1,112 @@
+#pragma once
+/// Electric and magnetic fields as forces on charges.
+
+#include "engine/any_force.hpp"
+#include "engine/charge.hpp"
+#include "engine/description.hpp"
+#include "engine/force_sink.hpp"
+
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace noether {
+
+/// Values of a field at one time and place. Fields begin with zeros and write what they have.
+template <class Real> struct FieldValues {
+  Vec3<Real> E = Vec3<Real>::Zero();  ///< [mass length/time^2/charge]
+  Vec3<Real> B = Vec3<Real>::Zero();  ///< [mass/time/charge]
+  Vec3<Real> A = Vec3<Real>::Zero();  ///< B = rot A, and of fields that change, E = - dA/dt - grad phi
+  Real phi = Real(0);                 ///< E = - grad phi where nothing changes [energy/charge]
+};
+
+/// A field: a struct that tells its values at (t, x), over the number type where derivatives, truth in 113 bits and
+/// lanes are to be had:
+///
+///     struct MyField {
+///       template <class Real> void at(const Real& t, const Vec3<Real>& x, FieldValues<Real>& field) const;
+///       static constexpr ElectromagneticClaims field_claims() { return {.vector_potential = false}; }  // optional
+///     };
+template <class F, class Real>
+concept ElectromagneticField =
+    requires(const F& field, const Real& t, const Vec3<Real>& x, FieldValues<Real>& values) { field.at(t, x, values); };
+
+/// What a field says of itself.
+struct ElectromagneticClaims {
+  bool potential = true;         ///< it tells phi, or its electric field comes from A alone
+  bool vector_potential = true;  ///< it tells A
+  bool time_dependent = false;
+};
+
+namespace detail {
+template <class F> constexpr ElectromagneticClaims field_claims() {
+  if constexpr (requires { F::field_claims(); }) {
+    return F::field_claims();
+  } else {
+    return {};
+  }
+}
+}  // namespace detail
+
+/// A field as a force on everything that has a charge:
+///
+///     f_i = q_i (E(t, x_i) + v_i x B(t, x_i)),   U = sum_i q_i phi(t, x_i)
+///
+/// It depends on velocities. Methods for q'' = f(t, q, v) take it as it is; of splittings `charged_particles`, which
+/// turns velocities instead of kicking them. Charges are the column `charge`; tracers have no mass, and feel nothing.
+/// @cost one evaluation of the field for each charge, no allocation
+/// @source Jackson1999
+template <class F> struct InField : F {
+  InField() = default;
+  InField(F field) : F(std::move(field)) {}  // NOLINT: a field is the force that it is
+
+  using columns = ColumnList<Charge>;
+  static constexpr bool is_field = true;
+
+  ForceClaims claims() const {
+    constexpr ElectromagneticClaims own = detail::field_claims<F>();
+    return {.energy = own.potential,
+            .virial = false,
+            .velocity_dependent = true,
+            .gyrates = true,
+            .time_dependent = own.time_dependent,
+            .keeps_momentum = false,
+            .keeps_angular_momentum = false,
+            .charges = true};
+  }
+
+  /// @throws Error  where particles have no charges
+  template <class Real> void check(const ParticleSystem<Real>& s) const {
+    if (!s.template has<Charge>()) {
+      throw Error("the field '" + detail::name_of(static_cast<const F&>(*this)) +
+                  "' acts on charges, but the particles have none; give them a column `charge`");
+    }
+  }
+
+  template <class Real>
+    requires ElectromagneticField<F, Real>
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    const auto& charges = s.template column<Charge>();
+    const Real t = s.time();
+    const bool momenta = out.wants_field_momenta();
+    if (momenta && !detail::field_claims<F>().vector_potential) {
+      out.fail({.quantity = "vector potential",
+                .message = "the field '" + detail::name_of(static_cast<const F&>(*this)) + "' tells no vector potential"});
+    }
+    for (Index i = 0; i < s.size(); ++i) {
+      const Real& q = charges[i];
+      const Real& m = s.masses()[i];
+      if (all(q == Real(0)) || all(m == Real(0))) continue;
+      FieldValues<Real> here;
+      this->at(t, s.positions()[i], here);
+      out.force(i, Vec3<Real>(q * here.E));
+      out.gyration(i, Vec3<Real>(q / m * here.B));
+      if (out.wants_energy()) out.energy(q * here.phi);
+      if (momenta) out.field_momentum(i, Vec3<Real>(q * here.A));
+    }
+  }
+};
+
+template <class F> InField(F) -> InField<F>;
+
+}  // namespace noether

@@ -1,0 +1,229 @@
+#pragma once
+/// Charges in fields: free motion, and kicks that turn velocities about the magnetic field.
+
+#include "engine/concepts.hpp"
+#include "engine/description.hpp"
+#include "engine/erasure.hpp"
+#include "engine/signature.hpp"
+#include "forces/electromagnetic_field.hpp"
+#include "forces/sum.hpp"
+#include "integrators/gyration.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "neighbors/neighbor_list.hpp"
+#include "numbers/parallel.hpp"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace noether {
+
+/// How a kick turns velocities.
+enum class Rotation : std::uint8_t {
+  exact,       ///< the helix of constant fields: B is an exact flow
+  boris,       ///< half a kick by E, a turn by 2 atan(h omega/2), half a kick: no sine
+  hyper_boris  ///< several such turns in closed form, with a better angle
+};
+/// How particles near the speed of light are kicked.
+enum class Relativistic : std::uint8_t { no, boris, vay, higuera_cary };
+
+template <> struct EnumNames<Rotation> {
+  static constexpr std::array<std::pair<Rotation, std::string_view>, 3> values = {
+      {{Rotation::exact, "exact"}, {Rotation::boris, "boris"}, {Rotation::hyper_boris, "hyper_boris"}}};
+};
+template <> struct EnumNames<Relativistic> {
+  static constexpr std::array<std::pair<Relativistic, std::string_view>, 4> values = {
+      {{Relativistic::no, "no"},
+       {Relativistic::boris, "boris"},
+       {Relativistic::vay, "vay"},
+       {Relativistic::higuera_cary, "higuera_cary"}}};
+};
+
+/// Parameters of `ChargedParticles`.
+struct ChargedParticlesOptions {
+  Rotation rotation = Rotation::exact;
+  std::int64_t cycles = 2;         ///< of `hyper_boris`: turns in a kick
+  std::int64_t gyrophase_order = 2;  ///< of `hyper_boris`: of the angle of each
+  Relativistic relativistic = Relativistic::no;
+  std::optional<double> c = {};  ///< speed of light [length/time]; default: that of the unit system
+
+  static constexpr auto describe() {
+    return part<ChargedParticlesOptions>(
+        "charged_particles", "charges in fields: free motion A, and kicks B that turn velocities about the magnetic field",
+        formula("x' = v,  m v' = q (E(t, x) + v x B(t, x)) + other forces"),
+        source("Boris1970, QinEtAl2013, HeEtAl2015, Vay2008, HigueraCary2017, ZenitaniKato2020"), letter('A', "drifts"),
+        letter('B', "kicks and turns"),
+        field<&ChargedParticlesOptions::rotation>("rotation", "1",
+                                                  "how kicks turn velocities: exact; boris, by 2 atan(h omega/2); "
+                                                  "hyper_boris, in cycles of better angles"),
+        field<&ChargedParticlesOptions::cycles>("cycles", "1", "of rotation = \"hyper_boris\": turns in a kick"),
+        field<&ChargedParticlesOptions::gyrophase_order>(
+            "gyrophase_order", "1", "of rotation = \"hyper_boris\": order of the angle of each turn, even"),
+        field<&ChargedParticlesOptions::relativistic>(
+            "relativistic", "1",
+            "no; or how particles near the speed of light are kicked: boris, vay, or higuera_cary, which keeps volume "
+            "and gets drifts across fields right"),
+        field<&ChargedParticlesOptions::c>("c", "length/time", "speed of light; default: that of the unit system"));
+  }
+  /// @throws Error  for options that do not go together
+  void check() const;
+
+  /// Nothing in itself but the motion: methods that do not split serve it too, but not at the speed of light.
+  std::tuple<> forces() const { return {}; }
+  bool only_forces() const { return relativistic == Relativistic::no; }
+  /// The speed of light of relativistic particles [length/time]; empty for others. @throws Error  where none is known
+  std::optional<double> light(const UnitSystem& units) const;
+  template <class Real> AnyHamiltonian<Real> split(ForceField<Real> forces) const;
+};
+
+/// Charges in fields, beside any other forces F(t, x):
+///
+///     A:  x -> x + h v
+///     B:  v -> the flow of v' = F/m + q E/m + v x Omega, Omega = q B/m, at fixed t and x, or a symmetric map like it
+///
+/// Both are exact where `rotation` is, and every scheme of the general class keeps its order; with `boris` and
+/// `hyper_boris` B is a symmetric map of order 2, and compositions are made of whole steps A B A. Both keep the volume
+/// in (x, v), and neither is symplectic in (x, m v + q A): where B changes from place to place no drift with v fixed is
+/// the flow of a Hamiltonian. What is conserved nevertheless is bounded for long times where the field has symmetries
+/// (docs/theory/fields.md). Fields tell q B/m by `ForceSink::gyration`; other forces may not depend on velocities.
+///
+/// Relativistic, the velocity column is the proper velocity u = gamma v while a run goes on, with its low word:
+///
+///     A:  x -> x + h u/gamma    B:  u' = F/m + q E/m + u x Omega/gamma by `relativistic`    H = sum m c^2 (gamma - 1)
+///
+/// @cost one evaluation of the fields and forces per B; 40 operations a particle for the turn, and with `exact` a sine
+/// @source Boris1970, QinEtAl2013, HeEtAl2015, Vay2008, HigueraCary2017, ZenitaniKato2020
+template <class F, class Real = double> class ChargedParticles {
+ public:
+  using real = Real;
+
+  /// @throws SchemeMismatch  if a force depends on velocities otherwise than fields do; Error for options that do not
+  ///         go together
+  explicit ChargedParticles(F forces, ChargedParticlesOptions options = {})
+      : forces_(std::move(forces)), options_(options), turn_(turn_of(options)) {
+    options_.check();
+    const ForceClaims claims = claims_of(forces_);
+    if (claims.velocity_dependent && !claims.gyrates) {
+      throw SchemeMismatch(
+          "a force depends on velocities otherwise than by a magnetic field, so kicks by it are not an exact flow; use "
+          "a method for q'' = f(q, v, t)");
+    }
+    if (!claims.kicks.empty() && claims.kicks != "B") {
+      throw SchemeMismatch("charged_particles has kicks of the letter B only; take multiple time steps out");
+    }
+  }
+
+  std::string name() const { return "charged_particles"; }
+  const F& forces() const { return forces_; }
+  HamiltonianClaims claims() const {
+    const ForceClaims forces = claims_of(forces_);
+    return {.alphabet = "AB",
+            .inexact = options_.rotation == Rotation::exact && !relativistic() ? "" : "B",
+            .basic = "ABA",
+            .kicks = "B",
+            .quadratic_kinetic = false,
+            .symplectic = false,
+            .energy = forces.energy,
+            .time_dependent = forces.time_dependent,
+            .dissipative = forces.dissipative,
+            .no_action = "its kicks turn velocities, which is no flow of a Hamiltonian, so the motion has no action",
+            .coordinates = std::uint8_t(relativistic() ? proper_velocities : 0),
+            .inertial = !relativistic(),
+            .velocity_forces = true,
+            .neighbors = true,
+            .keeps_momentum = forces.keeps_momentum,
+            .keeps_angular_momentum = forces.keeps_angular_momentum};
+  }
+
+  /// @throws Error  without a speed of light that a relativistic run needs, and for particles as fast as it
+  void bind(ParticleSystem<Real>& s);
+  void expect_kicks(double longest) { longest_kick_ = longest; }
+  bool set_neighbor_options(const NeighborOptions& options) {
+    neighbor_options_ = options;
+    return true;
+  }
+  void open(ParticleSystem<Real>& s);
+  void close(ParticleSystem<Real>& s);
+  void flow(char letter, ParticleSystem<Real>& s, const Real& h);
+  /// @throws LogicError  always
+  Real flow_with_action(char /*letter*/, ParticleSystem<Real>& /*s*/, const Real& /*h*/) {
+    throw LogicError("a kick that turns velocities has no action");
+  }
+  EnergyTerms<Real> energy(const ParticleSystem<Real>& s);
+  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a);
+
+  void observe(std::optional<Request> wanted) { observing_ = wanted; }
+  const std::optional<Failure>& failure() const { return failure_; }
+  Evaluations evaluations() const;
+  void save(SavedState& saved, const std::string& prefix) const;
+  void load(const SavedState& saved, const std::string& prefix);
+
+ private:
+  static constexpr std::uint8_t proper_velocities = 9;
+  struct Known {
+    std::uint64_t version;
+    Real time;
+    bool energy;
+  };
+
+  static Turn<Real> turn_of(const ChargedParticlesOptions& options) {
+    if (options.rotation == Rotation::boris) return Turn<Real>(1, 2);
+    return options.rotation == Rotation::exact ? Turn<Real>() : Turn<Real>(options.cycles, options.gyrophase_order);
+  }
+  bool relativistic() const { return options_.relativistic != Relativistic::no; }
+  void drift(ParticleSystem<Real>& s, const Real& h);
+  void kick(ParticleSystem<Real>& s, const Real& h);
+  void evaluate(const ParticleSystem<Real>& s, bool energy);
+  Vec3<Real> pushed(const Vec3<Real>& u, Index i, const Real& h) const;
+
+  F forces_;
+  ChargedParticlesOptions options_;
+  Turn<Real> turn_;
+  Real c_ = Real(0);                                ///< speed of light, where it matters
+  VectorColumn<Real> acceleration_{0}, rate_{0};  ///< F/m + q E/m, and q B/m
+  Real potential_ = Real(0);
+  std::optional<Known> known_;
+  bool moved_ = true;  ///< since the last evaluation that was counted
+  std::optional<Request> observing_;
+  std::optional<Failure> failure_, last_failure_;  ///< of the run; of the last evaluation, whoever asked for it
+  NeighborOptions neighbor_options_;
+  Workspace workspace_;
+  double longest_kick_ = 0;
+  std::int64_t evaluations_ = 0;
+};
+
+namespace detail {
+/// Fields of C++ programs are forces; forces are what they are.
+template <class F> auto as_force_on_charges(F force) {
+  if constexpr (Force<F, double>) {
+    return force;
+  } else {
+    return InField<F>(std::move(force));
+  }
+}
+}  // namespace detail
+
+template <class Real> AnyHamiltonian<Real> ChargedParticlesOptions::split(ForceField<Real> forces) const {
+  return ChargedParticles<ForceField<Real>, Real>(std::move(forces), *this);
+}
+
+template <class F> ChargedParticles(F) -> ChargedParticles<F, double>;
+template <class F> ChargedParticles(F, ChargedParticlesOptions) -> ChargedParticles<F, double>;
+
+/// Charges in a field, or in fields and forces: `charged_particles(Tokamak{.B0 = 1}, {.rotation = Rotation::boris})`.
+template <class... Fs> auto in_fields(ChargedParticlesOptions options, Fs... fields) {
+  return ChargedParticles(Sum(detail::as_force_on_charges(std::move(fields))...), options);
+}
+
+extern template class ChargedParticles<ForceField<double>>;
+extern template class ChargedParticles<ForceField<Quad>, Quad>;
+extern template struct detail::HamiltonianModel<ChargedParticles<ForceField<double>>>;
+extern template struct detail::HamiltonianModel<ChargedParticles<ForceField<Quad>, Quad>>;
+
+}  // namespace noether
+
+#include "integrators/charged_particles_impl.hpp"  // IWYU pragma: keep

@@ -1,0 +1,195 @@
+#pragma once
+/// Definitions of integrators/charged_particles.hpp; included by it.
+
+#include "integrators/charged_particles.hpp"
+
+#include "forces/speed_of_light.hpp"
+
+#include <cmath>
+
+namespace noether {
+
+namespace detail {
+
+/// Numbers in which the speeds of particles near that of light keep their digits: 1 - v^2/c^2 has none in doubles.
+template <class Real> using FastNumber = std::conditional_t<std::is_same_v<Real, double>, Quad, Real>;
+
+/// Sum of both words of a velocity.
+template <class Real> Vec3<FastNumber<Real>> whole_velocity(const ParticleSystem<Real>& s, Index i) {
+  using Wide = FastNumber<Real>;
+  Vec3<Wide> v;
+  for (int k = 0; k < 3; ++k) {
+    v[k] = Wide(s.velocities().component(k)[i]);
+    if (s.low_words() != nullptr) v[k] += Wide(s.low_words()->v.component(k)[i]);
+  }
+  return v;
+}
+template <class Real> void set_whole_velocity(ParticleSystem<Real>& s, Index i, const Vec3<FastNumber<Real>>& v) {
+  for (int k = 0; k < 3; ++k) {
+    const Real high = Real(v[k]);
+    s.velocities().component(k)[i] = high;
+    if (s.low_words() != nullptr) s.low_words()->v.component(k)[i] = Real(v[k] - FastNumber<Real>(high));
+  }
+}
+/// gamma of a velocity.
+template <class Wide> Wide gamma_of_velocity(const Vec3<Wide>& v, const Wide& c) {
+  using std::sqrt;
+  return Wide(1) / sqrt(Wide(1) - norm2(v) / (c * c));
+}
+
+}  // namespace detail
+
+template <class F, class Real> void ChargedParticles<F, Real>::bind(ParticleSystem<Real>& s) {
+  bind_force(forces_, s);
+  workspace_ = Workspace();
+  workspace_.put(NeighborList(claims_of(forces_).range, neighbor_options_));
+  acceleration_ = rate_ = VectorColumn<Real>(s.size());
+  known_.reset();
+  failure_.reset();
+  if (!relativistic()) return;
+  if constexpr (InLanes<Real>) {
+    throw Error("relativistic charges are stepped one system at a time; run these systems one by one");
+  }
+  c_ = speed_of_light_in(s, options_.c, "charged_particles");
+  if constexpr (std::is_same_v<Real, double>) s.keep_low_words(true);
+  if (s.phase().coordinates != 0) return;
+  for (Index i = 0; i < s.size(); ++i) {
+    const auto v = detail::whole_velocity(s, i);
+    if (norm2(v) < c_ * c_) continue;
+    throw Error("'" + s.name(i) + "' is as fast as light or faster; speeds below c are expected");
+  }
+}
+
+template <class F, class Real> void ChargedParticles<F, Real>::open(ParticleSystem<Real>& s) {
+  if (!relativistic()) return;
+  using Wide = detail::FastNumber<Real>;
+  for (Index i = 0; i < s.size(); ++i) {
+    const Vec3<Wide> v = detail::whole_velocity(s, i);
+    detail::set_whole_velocity<Real>(s, i, detail::gamma_of_velocity(v, Wide(c_)) * v);
+  }
+  s.phase().coordinates = proper_velocities;
+}
+
+template <class F, class Real> void ChargedParticles<F, Real>::close(ParticleSystem<Real>& s) {
+  if (!relativistic()) return;
+  using std::sqrt;
+  using Wide = detail::FastNumber<Real>;
+  const Wide c2 = Wide(c_) * Wide(c_);
+  for (Index i = 0; i < s.size(); ++i) {
+    const Vec3<Wide> u = detail::whole_velocity(s, i);
+    detail::set_whole_velocity<Real>(s, i, u / Wide(sqrt(Wide(1) + norm2(u) / c2)));
+  }
+  s.phase().coordinates = 0;
+}
+
+template <class F, class Real>
+void ChargedParticles<F, Real>::flow(char letter, ParticleSystem<Real>& s, const Real& h) {
+  letter == 'A' ? drift(s, h) : kick(s, h);
+}
+
+template <class F, class Real> void ChargedParticles<F, Real>::drift(ParticleSystem<Real>& s, const Real& h) {
+  if (!observing_) moved_ = true;
+  if (!relativistic()) return s.advance_positions(h);
+  using std::sqrt;
+  for_blocks(s.size(), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      const Vec3<Real> u = std::as_const(s).velocities()[i];
+      s.shift(i, Vec3<Real>(h / sqrt(Real(1) + norm2(u) / (c_ * c_)) * u), Vec3<Real>(Vec3<Real>::Zero()));
+    }
+  });
+  s.moved();
+}
+
+template <class F, class Real>
+Vec3<Real> ChargedParticles<F, Real>::pushed(const Vec3<Real>& u, Index i, const Real& h) const {
+  const Vec3<Real> a = std::as_const(acceleration_)[i], rate = std::as_const(rate_)[i];
+  switch (options_.relativistic) {
+    case Relativistic::boris: return boris_push(u, a, rate, c_, h);
+    case Relativistic::vay: return vay_push(u, a, rate, c_, h);
+    case Relativistic::higuera_cary: return higuera_cary_push(u, a, rate, c_, h);
+    case Relativistic::no: break;
+  }
+  return turned(u, a, rate, turn_, h);
+}
+
+template <class F, class Real> void ChargedParticles<F, Real>::kick(ParticleSystem<Real>& s, const Real& h) {
+  evaluate(s, false);
+  for_blocks(s.size(), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      const Vec3<Real> v = std::as_const(s).velocities()[i];
+      s.shift(i, Vec3<Real>(Vec3<Real>::Zero()), pushed(v, i, h));
+    }
+  });
+  if (observing_) return;
+  if (last_failure_ && !failure_) failure_ = last_failure_;
+  if (std::exchange(moved_, false)) ++evaluations_;
+}
+
+template <class F, class Real>
+void ChargedParticles<F, Real>::evaluate(const ParticleSystem<Real>& s, bool energy) {
+  const Real time = s.time();
+  if (known_ && known_->version == s.version() && known_->time == time && (known_->energy || !energy)) return;
+  ForceSink<Real> sink(acceleration_, s, {.energy = energy}, &workspace_, longest_kick_);
+  sink.set_gyrations(rate_);
+  forces_.add_to(sink, s);
+  if (energy) potential_ = sink.potential();
+  last_failure_ = sink.failure();
+  known_ = Known{s.version(), time, energy};
+}
+
+template <class F, class Real> EnergyTerms<Real> ChargedParticles<F, Real>::energy(const ParticleSystem<Real>& s) {
+  evaluate(s, true);
+  if (!relativistic()) return {kinetic_energy(s), potential_};
+  using Wide = detail::FastNumber<Real>;
+  const Real kinetic = sum_over<Real>(s.size(), [&](Index i) {
+    // m c^2 (gamma - 1) without the difference
+    const Vec3<Wide> v = detail::whole_velocity(s, i);
+    const Wide gamma = detail::gamma_of_velocity(v, Wide(c_)), u2 = gamma * gamma * norm2(v);
+    return s.masses()[i] * Real(u2 / (gamma + Wide(1)));
+  });
+  return {kinetic, potential_};
+}
+
+template <class F, class Real>
+void ChargedParticles<F, Real>::accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
+  evaluate(s, false);
+  if (a.size() != s.size()) a = VectorColumn<Real>(s.size());
+  using Wide = detail::FastNumber<Real>;
+  for (Index i = 0; i < s.size(); ++i) {
+    const Vec3<Real> v = s.velocities()[i];
+    Vec3<Real> all = std::as_const(acceleration_)[i] + cross(v, Vec3<Real>(std::as_const(rate_)[i]));
+    if (relativistic()) {  // u' = all, v = u/gamma
+      const Real gamma(detail::gamma_of_velocity(detail::whole_velocity(s, i), Wide(c_)));
+      all = (all - dot(v, all) / (c_ * c_) * v) / gamma;
+    }
+    a.set(i, all);
+  }
+}
+
+template <class F, class Real> Evaluations ChargedParticles<F, Real>::evaluations() const {
+  Evaluations all{.force = evaluations_};
+  const auto* list = workspace_.find<NeighborList>();
+  if (list != nullptr && list->statistics().searches > 0) all.neighbors = list->statistics();
+  return all;
+}
+
+template <class F, class Real>
+void ChargedParticles<F, Real>::save(SavedState& saved, const std::string& prefix) const {
+  detail::save_signature(saved, prefix, forces_);
+  detail::save_signature(saved, prefix + "charges/", options_);
+  save_value(saved, prefix + "evaluations", evaluations_);
+  save_value(saved, prefix + "moved", moved_);
+}
+
+template <class F, class Real>
+void ChargedParticles<F, Real>::load(const SavedState& saved, const std::string& prefix) {
+  detail::check_signature(saved, prefix, forces_);
+  detail::check_signature(saved, prefix + "charges/", options_);
+  load_value(saved, prefix + "evaluations", evaluations_);
+  load_value(saved, prefix + "moved", moved_);
+  known_.reset();
+  failure_.reset();
+  last_failure_.reset();
+}
+
+}  // namespace noether
