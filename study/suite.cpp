@@ -219,7 +219,7 @@ std::string expected_by_theory(const Scene& scene, const Candidate& who, double 
   const auto matrix = step_matrix(scene, who, mode);
   if (!matrix) {
     const auto roots = multistep_roots(scene, who, mode);
-    if (!roots) return "";
+    if (!roots) return first_step_fails(scene, who, mode, z) ? "solver" : "";
     if (roots->solver && z >= *roots->solver) return "solver";
     return roots->growth(z) > growth_threshold ? "unbounded" : "bounded";
   }

@@ -118,7 +118,7 @@ namespace examples::robertson {
 #include "examples/robertson/main.cpp"
 }
 #define run(steps) run(examples::shortened.value_or(steps))
-#define run_until(end) run(sim.steps_in(end))
+#define run_until(end) run(sim.steps_in(end) - sim.step())
 namespace examples::alkane_liquid {
 #include "examples/alkane_liquid/main.cpp"
 }
