@@ -114,10 +114,20 @@ struct NamedListing {
 /// A list of one kind of parts.
 template <auto kinds> Listing parts_of(const Parts& parts) { return listing_of_parts(infos_of((parts.*kinds)())); }
 
-constexpr std::array<NamedListing, 10> listings = {{
+/// Forces alone, or the fields of charges among them.
+template <bool fields> Listing forces(const Parts& parts) {
+  std::vector<PartInfo> infos;
+  for (const Parts::ForceKind& kind : parts.forces()) {
+    if (kind.field == fields) infos.push_back(kind.info);
+  }
+  return listing_of_parts(infos);
+}
+
+constexpr std::array<NamedListing, 11> listings = {{
     {"methods", methods},
     {"hamiltonians", parts_of<&Parts::hamiltonians>},
-    {"forces", parts_of<&Parts::forces>},
+    {"forces", forces<false>},
+    {"fields", forces<true>},
     {"thermostats", parts_of<&Parts::thermostats>},
     {"constraints", parts_of<&Parts::constraints>},
     {"systems", parts_of<&Parts::systems>},

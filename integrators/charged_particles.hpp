@@ -197,27 +197,18 @@ template <class F, class Real = double> class ChargedParticles {
 };
 
 namespace detail {
-/// Fields of C++ programs are forces; forces are what they are.
-template <class F> auto as_force_on_charges(F force) {
-  if constexpr (Force<F, double>) {
-    return force;
-  } else {
-    return InField<F>(std::move(force));
-  }
-}
+/// A field as a force; a force as it is.
+template <class F> struct OnCharges { using type = std::conditional_t<Force<F, double>, F, InField<F>>; };
 }  // namespace detail
 
 template <class Real> AnyHamiltonian<Real> ChargedParticlesOptions::split(ForceField<Real> forces) const {
   return ChargedParticles<ForceField<Real>, Real>(std::move(forces), *this);
 }
 
-template <class F> ChargedParticles(F) -> ChargedParticles<F, double>;
-template <class F> ChargedParticles(F, ChargedParticlesOptions) -> ChargedParticles<F, double>;
-
-/// Charges in a field, or in fields and forces: `charged_particles(Tokamak{.B0 = 1}, {.rotation = Rotation::boris})`.
-template <class... Fs> auto in_fields(ChargedParticlesOptions options, Fs... fields) {
-  return ChargedParticles(Sum(detail::as_force_on_charges(std::move(fields))...), options);
-}
+// `ChargedParticles(Tokamak{.B0 = 1}, {.rotation = Rotation::boris})`; several fields and forces as a Sum of InFields.
+template <class F> ChargedParticles(F) -> ChargedParticles<typename detail::OnCharges<F>::type, double>;
+template <class F>
+ChargedParticles(F, ChargedParticlesOptions) -> ChargedParticles<typename detail::OnCharges<F>::type, double>;
 
 extern template class ChargedParticles<ForceField<double>>;
 extern template class ChargedParticles<ForceField<Quad>, Quad>;

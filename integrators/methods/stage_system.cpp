@@ -9,7 +9,7 @@ namespace noether {
 namespace {
 
 /// Unknowns up to which a field without a `sparsity` has a dense system by default.
-constexpr Index most_dense = 1000;
+constexpr Index most_dense_rows = 1000;
 /// Directions of a cycle of GMRES: shifts of several stages are complex, and eigenvalues of the system lie on all sides
 /// of 0, where short cycles make no way.
 constexpr Index cycle = 150;
@@ -25,7 +25,7 @@ StageSystem<Real>::StageSystem(const VectorField<Real>& f, int stages, const Sta
   velocity_dependent_ = claims.velocity_dependent;
   n_ = second_order_ ? f.size() / 2 : f.size();
   const bool known = !second_order_ && !f.sparsity().empty();
-  if (!form && !known && rows() > most_dense) form = JacobianForm::matrix_free;
+  if (!form && !known && rows() > most_dense_rows) form = JacobianForm::matrix_free;
   jacobians_[0].bind(f, {.form = form});
   direction_.setZero(f.size());
 }

@@ -1,6 +1,7 @@
 /// Threads x cadence x program or scene x restart, for schemes, Hamiltonians and forces, at every SIMD level.
 
 #include "engine/bodies.hpp"
+#include "forces/electromagnetic_fields.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/lennard_jones.hpp"
@@ -9,6 +10,7 @@
 #include "forces/on_sites.hpp"
 #include "forces/sum.hpp"
 #include "integrators/all_schemes.hpp"
+#include "integrators/charged_particles.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
@@ -248,6 +250,41 @@ std::vector<Twin> two_word_twins() {
   return twins;
 }
 
+/// Charges in fields: kicks of every kind, with threads, and with the low words that fast ones have.
+std::vector<Twin> charged_twins() {
+  ParticleSystem<double> s(unit_system("reduced"));
+  s.add_column<Charge>();
+  for (Index i = 0; i < 300; ++i) {
+    const double k = static_cast<double>(i);
+    s.add(fmt::format("charge {}", i), 1 + 0.1 * static_cast<double>(i % 7),
+          {1.05 + 0.001 * k, 0.1 * std::sin(k), 0.05 * std::cos(k)}, {0.01 * std::cos(k), 0.02, 0.01 * std::sin(3 * k)});
+    s.column<Charge>()[i] = i % 3 == 0 ? -1 : 1;
+  }
+  std::vector<Twin> twins;
+  const auto add = [&](const std::string& name, const ChargedParticlesOptions& options, const std::string& keys,
+                       const Scheme& scheme) {
+    ForceField<double> forces;
+    forces.add(InField(Tokamak{.B0 = 1, .R0 = 1, .safety = 2}));
+    forces.add(InField(UniformElectromagnetic{.E = {0.01, 0, 0.02}, .B = {0, 0, 0.1}}));
+    twins.push_back({.name = "charges, " + name,
+                     .bodies = s,
+                     .program = compose(ChargedParticles<ForceField<double>>(forces, options), scheme),
+                     .step = 0.1,
+                     .hamiltonian = "[hamiltonian]\ntype='charged_particles'\n" + keys +
+                                    "[[hamiltonian.field]]\ntype='tokamak'\nB0=1\nR0=1\nsafety=2\n"
+                                    "[[hamiltonian.field]]\ntype='uniform_electromagnetic'\nE=[0.01,0,0.02]\nB=[0,0,0.1]\n",
+                     .method = std::string(scheme.name),
+                     .place = "[[particles.body]]\nname='replaced too'\nmass=1\ncharge=1\nx=[1,0,0]\nv=[0,0,0]\n"});
+  };
+  add("the exact helix", {}, "", schemes::blanes_moan_s6);
+  add("Boris", {.rotation = Rotation::boris}, "rotation='boris'\n", schemes::yoshida_4);
+  add("cycles", {.rotation = Rotation::hyper_boris, .cycles = 3, .gyrophase_order = 4},
+      "rotation='hyper_boris'\ncycles=3\ngyrophase_order=4\n", schemes::verlet_aba);
+  add("fast ones", {.relativistic = Relativistic::higuera_cary, .c = 0.1}, "relativistic='higuera_cary'\nc=0.1\n",
+      schemes::yoshida_4);
+  return twins;
+}
+
 /// Methods exact in energy, which serve neither tracers, all of them, nor forces that depend on time.
 std::vector<Twin> exact_energy_twins() {
   std::vector<Twin> twins;
@@ -266,7 +303,7 @@ std::vector<Twin> exact_energy_twins() {
 
 void check_all_twins(std::size_t stride) {
   for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), projected_twins(),
-                            turning_twins(), rigid_twins(), two_word_twins(), exact_energy_twins(), corrected_twins(),
+                            turning_twins(), rigid_twins(), two_word_twins(), charged_twins(), exact_energy_twins(), corrected_twins(),
                             wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
                             wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);

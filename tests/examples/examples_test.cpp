@@ -54,6 +54,7 @@ const std::vector<Example> all = {
     {"outer_solar_system", outer_solar_system::program, Length::nightly, Bits::everywhere, 4000},
     {"pendulum", pendulum::program, Length::quick},
     {"pendulum_by_its_action", pendulum_by_its_action::program, Length::quick, Bits::of_this_machine, 100},
+    {"penning_trap", penning_trap::program, Length::quick, Bits::of_this_machine},
     {"pythagorean", pythagorean::program, Length::nightly, Bits::everywhere, 20'000},
     {"rigid_water", rigid_water::program, Length::quick, Bits::of_this_machine, 100},
     {"robertson", robertson::program, Length::quick, Bits::of_this_machine, 0},
@@ -63,8 +64,10 @@ const std::vector<Example> all = {
     {"spin_orbit", spin_orbit::program, Length::slow, Bits::of_this_machine},
     {"template_project", template_project::program, Length::quick},
     {"tennis_racket", tennis_racket::program, Length::quick, Bits::of_this_machine},
+    {"tokamak_banana", tokamak_banana::program, Length::quick, Bits::of_this_machine},
     {"tumbling_block", tumbling_block::program, Length::slow, Bits::of_this_machine, 20},
     {"two_phase_slab", two_phase_slab::program, Length::slow, Bits::of_this_machine, 100},
+    {"van_allen", van_allen::program, Length::quick, Bits::of_this_machine},
     {"water_box", water_box::program, Length::nightly, Bits::of_this_machine, 50},
 };
 

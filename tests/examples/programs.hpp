@@ -188,6 +188,9 @@ namespace examples::pendulum {
 namespace examples::pendulum_by_its_action {
 #include "examples/pendulum_by_its_action/main.cpp"
 }
+namespace examples::penning_trap {
+#include "examples/penning_trap/main.cpp"
+}
 namespace examples::pythagorean {
 #include "examples/pythagorean/main.cpp"
 }
@@ -212,11 +215,17 @@ namespace examples::template_project {
 namespace examples::tennis_racket {
 #include "examples/tennis_racket/main.cpp"
 }
+namespace examples::tokamak_banana {
+#include "examples/tokamak_banana/main.cpp"
+}
 namespace examples::tumbling_block {
 #include "examples/tumbling_block/main.cpp"
 }
 namespace examples::two_phase_slab {
 #include "examples/two_phase_slab/main.cpp"
+}
+namespace examples::van_allen {
+#include "examples/van_allen/main.cpp"
 }
 namespace examples::water_box {
 #include "examples/water_box/main.cpp"

@@ -50,6 +50,10 @@ def forces(*lists):
     return '[hamiltonian]\ntype = "kinetic_potential"\n' + "".join(table("hamiltonian.force", keys) for keys in lists)
 
 
+def fields(*lists, kind="charged_particles"):
+    return f'[hamiltonian]\ntype = "{kind}"\n' + "".join(table("hamiltonian.field", keys) for keys in lists)
+
+
 def constrained(place, keys, *more):
     """Under a weight and a weak spring, so that everything that is free to move does."""
     motion = forces(WEIGHT, "type = 'harmonic_field'; k = 0.5", *more) + table("hamiltonian.constraint", keys)
@@ -60,6 +64,10 @@ WEIGHT = "type = 'uniform_field'; acceleration = [0.0, 0.3, -1.0]"
 SPRING = "type = 'harmonic_field'; k = 1"
 
 PAIR = body("a", 1.0, (0.5, 0.1, 0.0), (0.0, 0.2, 0.1)) + body("b", 2.0, (-0.3, 0.2, 0.1), (0.1, 0.0, -0.1))
+
+CHARGES = (body("a", 1.0, (1.1, 0.1, 0.0), (0.0, 0.2, 0.1), "charge = 1.0\n") +
+           body("b", 2.0, (-0.9, 0.6, 0.2), (0.1, 0.0, -0.1), "charge = -1.0\n"))
+SOLENOID = "type = 'uniform_electromagnetic'; B = [0.0, 0.3, 2.0]; E = [0.1, 0.0, 0.05]"
 
 PLANETS = (body("star", 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) +
            body("inner", 1e-3, (1.0, 0.0, 0.0), (0.0, 1.0, 0.05)) +
@@ -193,6 +201,19 @@ PULL = "type = 'gravity_of_bodies'; G = 1"
 HAMILTONIANS = {
     "kinetic_potential": Case(PLANETS, forces(GRAVITY)),
     "wisdom_holman": Case(PLANETS, '[hamiltonian]\ntype = "wisdom_holman"\nG = 1\n'),
+    "charged_particles": Case(CHARGES, fields(SOLENOID)),
+}
+
+FIELDS = {
+    "uniform_electromagnetic": Case(CHARGES, fields(SOLENOID)),
+    "magnetic_gradient": Case(CHARGES, fields("type = 'magnetic_gradient'; B0 = 1; gradient = 0.1")),
+    "magnetic_mirror": Case(CHARGES, fields("type = 'magnetic_mirror'; B0 = 3; radius = 1.5; distance = 2")),
+    "magnetic_dipole": Case(CHARGES, fields("type = 'magnetic_dipole'; moment = [0.0, 0.1, -2.0]")),
+    "tokamak": Case(CHARGES, fields("type = 'tokamak'; B0 = 1; R0 = 1; safety = 2")),
+    "penning_trap": Case(CHARGES, fields("type = 'penning_trap'; B0 = 5; gradient = 2")),
+    "plane_wave": Case(CHARGES, fields("type = 'plane_wave'; E0 = [0.3, 0.1, 0.0]; omega = 3; c = 2")),
+    "radio_frequency_gap": Case(CHARGES, fields(
+        "type = 'radio_frequency_gap'; E0 = 0.5; length = 0.4; omega = 3; c = 5")),
 }
 
 BLOCK = ("[particles]\ntype = 'block'\ncells = [1, 1, 1]\nsize = [1, 1, 1]\ndensity = 1\nstretch = [1.2, 0.9, 1.05]\n"
@@ -397,6 +418,8 @@ MONITORS = {
     "velocity_autocorrelation": seen("type = 'velocity_autocorrelation'; length = 4; origins = 2; steps = {cadence}",
                                      salt(LENNARD_JONES)),
     "variables": seen("type = 'variables'; variable = 'z'; steps = {cadence}", system("type = 'lorenz'", step=0.01)),
+    "canonical_momentum": seen("type = 'canonical_momentum'; steps = {cadence}", Case(CHARGES, fields(SOLENOID))),
+    "magnetic_moment": seen("type = 'magnetic_moment'; steps = {cadence}", Case(CHARGES, fields(SOLENOID))),
     "momentum_map": seen("type = 'momentum_map'; symmetry = 'rotation'; steps = {cadence}",
                          action("type = 'polar_kepler'")),
     "constraint_residual": seen("type = 'constraint_residual'; steps = {cadence}",
@@ -430,6 +453,7 @@ BUILDERS = {
 KINDS = {
     "hamiltonians": (HAMILTONIANS, "Hamiltonians"),
     "forces": (FORCES, "Forces"),
+    "fields": (FIELDS, "Fields of charges"),
     "thermostats": (THERMOSTATS, "Thermostats"),
     "constraints": (CONSTRAINTS, "Constraints"),
     "solvers": (SOLVERS, "Solvers of constraints"),
