@@ -24,6 +24,7 @@
 #include "forces/anharmonic_chain.hpp"
 #include "forces/bonded.hpp"
 #include "forces/check_gradient.hpp"
+#include "forces/electromagnetic_fields.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/gravity_of_bodies.hpp"
@@ -36,6 +37,7 @@
 #include "forces/sum.hpp"
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
+#include "integrators/charged_particles.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
@@ -53,6 +55,7 @@
 #include "io/digest.hpp"
 #include "io/structure.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/charges.hpp"
 #include "monitors/dihedrals.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/orbital_monitors.hpp"
@@ -78,6 +81,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
