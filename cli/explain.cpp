@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/explain_bodies.hpp"
 #include "cli/explain_kept.hpp"
+#include "cli/gyration_text.hpp"
 #include "cli/method_text.hpp"
 
 #include "integrators/composition.hpp"
@@ -136,7 +137,7 @@ void sort_parts(const Scene& scene, Explanation& e) {
   if (scene.system) e.in.push_back("system " + scene.system->name);
   for (const SceneForce& force : scene.hamiltonian.forces) {
     const bool wide = force.force.in_quad().has_value();
-    e.in.push_back("force " + force.name + held_terms(force, scene.particles) +
+    e.in.push_back((force.force.claims().gyrates ? "field " : "force ") + force.name + held_terms(force, scene.particles) +
                    (wide ? "" : ", in double precision only: compare has no reference for it"));
   }
   if (const auto& bath = scene.hamiltonian.thermostat) {
@@ -433,6 +434,7 @@ void print_text(const Scene& scene, const Explanation& e, bool all) {
         "exact, energies are doubles\n",
         force.name);
   }
+  if (const std::string gyration = gyration_text(scene); !gyration.empty()) fmt::print("{}\n", gyration);
   if (!e.kept.empty()) fmt::print("{}\n", e.kept);
   if (!e.shadow.empty()) fmt::print("{}\n", e.shadow);
   if (!e.small_box.empty()) fmt::print("{}\n", e.small_box);

@@ -75,6 +75,8 @@ template <class F> struct InField : F {
             .charges = true};
   }
 
+  /// @throws Error  for what the field itself refuses
+  void check() const { check_part(static_cast<const F&>(*this)); }
   /// @throws Error  where particles have no charges
   template <class Real> void check(const ParticleSystem<Real>& s) const {
     if (!s.template has<Charge>()) {

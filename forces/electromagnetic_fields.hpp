@@ -100,7 +100,7 @@ struct MagneticDipole {
         source("Jackson1999"),
         field<&MagneticDipole::moment>("moment", "mass length^3/charge/time",
                                        "M: mu_0/4 pi times the moment; |M|/r^3 is B on the equator")
-            .required("[0, 0, \"-8e15 T m^3\"]"));
+            .required("[\"0 T m^3\", \"0 T m^3\", \"-8e15 T m^3\"]"));
   }
 
   template <class Real> void at(const Real& /*t*/, const Vec3<Real>& x, FieldValues<Real>& field) const {
@@ -190,7 +190,7 @@ struct PlaneWave {
         "plane_wave", "a plane electromagnetic wave, linearly polarized",
         formula("E = E0 cos(omega (n.x/c - t) + phase),  B = n x E/c"), source("Jackson1999"),
         field<&PlaneWave::E0>("E0", detail::electric_unit, "amplitude, across the direction")
-            .required("[\"1e9 V/m\", 0, 0]"),
+            .required("[\"1e9 V/m\", \"0 V/m\", \"0 V/m\"]"),
         field<&PlaneWave::direction>("direction", "1", "n, in which it goes, of any length"),
         field<&PlaneWave::omega>("omega", "1/time", "angular frequency").required("\"2e15/s\""),
         field<&PlaneWave::c>("c", "length/time", "speed of light").required("\"299792458 m/s\""),

@@ -4,12 +4,10 @@
 #include "engine/concepts.hpp"
 #include "engine/description.hpp"
 #include "engine/erasure.hpp"
-#include "engine/signature.hpp"
-#include "forces/electromagnetic_field.hpp"
 #include "forces/sum.hpp"
+#include "integrators/field_forces.hpp"
 #include "integrators/gyration.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "neighbors/neighbor_list.hpp"
 #include "numbers/parallel.hpp"
 
 #include <array>
@@ -104,23 +102,14 @@ template <class F, class Real = double> class ChargedParticles {
   /// @throws SchemeMismatch  if a force depends on velocities otherwise than fields do; Error for options that do not
   ///         go together
   explicit ChargedParticles(F forces, ChargedParticlesOptions options = {})
-      : forces_(std::move(forces)), options_(options), turn_(turn_of(options)) {
+      : forces_(std::move(forces), "charged_particles"), options_(options), turn_(turn_of(options)) {
     options_.check();
-    const ForceClaims claims = claims_of(forces_);
-    if (claims.velocity_dependent && !claims.gyrates) {
-      throw SchemeMismatch(
-          "a force depends on velocities otherwise than by a magnetic field, so kicks by it are not an exact flow; use "
-          "a method for q'' = f(q, v, t)");
-    }
-    if (!claims.kicks.empty() && claims.kicks != "B") {
-      throw SchemeMismatch("charged_particles has kicks of the letter B only; take multiple time steps out");
-    }
   }
 
   std::string name() const { return "charged_particles"; }
-  const F& forces() const { return forces_; }
+  const F& forces() const { return forces_.forces(); }
   HamiltonianClaims claims() const {
-    const ForceClaims forces = claims_of(forces_);
+    const ForceClaims forces = forces_.claims();
     return {.alphabet = "AB",
             .inexact = options_.rotation == Rotation::exact && !relativistic() ? "" : "B",
             .basic = "ABA",
@@ -141,9 +130,9 @@ template <class F, class Real = double> class ChargedParticles {
 
   /// @throws Error  without a speed of light that a relativistic run needs, and for particles as fast as it
   void bind(ParticleSystem<Real>& s);
-  void expect_kicks(double longest) { longest_kick_ = longest; }
+  void expect_kicks(double longest) { forces_.expect_kicks(longest); }
   bool set_neighbor_options(const NeighborOptions& options) {
-    neighbor_options_ = options;
+    forces_.set_neighbor_options(options);
     return true;
   }
   void open(ParticleSystem<Real>& s);
@@ -157,19 +146,13 @@ template <class F, class Real = double> class ChargedParticles {
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a);
 
   void observe(std::optional<Request> wanted) { observing_ = wanted; }
-  const std::optional<Failure>& failure() const { return failure_; }
-  Evaluations evaluations() const;
+  const std::optional<Failure>& failure() const { return forces_.failure(); }
+  Evaluations evaluations() const { return forces_.evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const;
   void load(const SavedState& saved, const std::string& prefix);
 
  private:
   static constexpr std::uint8_t proper_velocities = 9;
-  struct Known {
-    std::uint64_t version;
-    Real time;
-    bool energy;
-  };
-
   static Turn<Real> turn_of(const ChargedParticlesOptions& options) {
     if (options.rotation == Rotation::boris) return Turn<Real>(1, 2);
     return options.rotation == Rotation::exact ? Turn<Real>() : Turn<Real>(options.cycles, options.gyrophase_order);
@@ -177,29 +160,14 @@ template <class F, class Real = double> class ChargedParticles {
   bool relativistic() const { return options_.relativistic != Relativistic::no; }
   void drift(ParticleSystem<Real>& s, const Real& h);
   void kick(ParticleSystem<Real>& s, const Real& h);
-  void evaluate(const ParticleSystem<Real>& s, bool energy);
   Vec3<Real> pushed(const Vec3<Real>& u, Index i, const Real& h) const;
 
-  F forces_;
+  detail::FieldForces<F, Real> forces_;
   ChargedParticlesOptions options_;
   Turn<Real> turn_;
-  Real c_ = Real(0);                                ///< speed of light, where it matters
-  VectorColumn<Real> acceleration_{0}, rate_{0};  ///< F/m + q E/m, and q B/m
-  Real potential_ = Real(0);
-  std::optional<Known> known_;
-  bool moved_ = true;  ///< since the last evaluation that was counted
+  Real c_ = Real(0);  ///< speed of light, where it matters
   std::optional<Request> observing_;
-  std::optional<Failure> failure_, last_failure_;  ///< of the run; of the last evaluation, whoever asked for it
-  NeighborOptions neighbor_options_;
-  Workspace workspace_;
-  double longest_kick_ = 0;
-  std::int64_t evaluations_ = 0;
 };
-
-namespace detail {
-/// A field as a force; a force as it is.
-template <class F> struct OnCharges { using type = std::conditional_t<Force<F, double>, F, InField<F>>; };
-}  // namespace detail
 
 template <class Real> AnyHamiltonian<Real> ChargedParticlesOptions::split(ForceField<Real> forces) const {
   return ChargedParticles<ForceField<Real>, Real>(std::move(forces), *this);

@@ -40,12 +40,7 @@ template <class Wide> Wide gamma_of_velocity(const Vec3<Wide>& v, const Wide& c)
 }  // namespace detail
 
 template <class F, class Real> void ChargedParticles<F, Real>::bind(ParticleSystem<Real>& s) {
-  bind_force(forces_, s);
-  workspace_ = Workspace();
-  workspace_.put(NeighborList(claims_of(forces_).range, neighbor_options_));
-  acceleration_ = rate_ = VectorColumn<Real>(s.size());
-  known_.reset();
-  failure_.reset();
+  forces_.bind(s);
   if (!relativistic()) return;
   if constexpr (InLanes<Real>) {
     throw Error("relativistic charges are stepped one system at a time; run these systems one by one");
@@ -88,7 +83,7 @@ void ChargedParticles<F, Real>::flow(char letter, ParticleSystem<Real>& s, const
 }
 
 template <class F, class Real> void ChargedParticles<F, Real>::drift(ParticleSystem<Real>& s, const Real& h) {
-  if (!observing_) moved_ = true;
+  if (!observing_) forces_.note_move();
   if (!relativistic()) return s.advance_positions(h);
   using std::sqrt;
   for_blocks(s.size(), [&](Index begin, Index end) {
@@ -102,7 +97,7 @@ template <class F, class Real> void ChargedParticles<F, Real>::drift(ParticleSys
 
 template <class F, class Real>
 Vec3<Real> ChargedParticles<F, Real>::pushed(const Vec3<Real>& u, Index i, const Real& h) const {
-  const Vec3<Real> a = std::as_const(acceleration_)[i], rate = std::as_const(rate_)[i];
+  const Vec3<Real> a = forces_.acceleration(i), rate = forces_.rate(i);
   switch (options_.relativistic) {
     case Relativistic::boris: return boris_push(u, a, rate, c_, h);
     case Relativistic::vay: return vay_push(u, a, rate, c_, h);
@@ -113,33 +108,19 @@ Vec3<Real> ChargedParticles<F, Real>::pushed(const Vec3<Real>& u, Index i, const
 }
 
 template <class F, class Real> void ChargedParticles<F, Real>::kick(ParticleSystem<Real>& s, const Real& h) {
-  evaluate(s, false);
+  forces_.evaluate(s, false);
   for_blocks(s.size(), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
       const Vec3<Real> v = std::as_const(s).velocities()[i];
       s.shift(i, Vec3<Real>(Vec3<Real>::Zero()), pushed(v, i, h));
     }
   });
-  if (observing_) return;
-  if (last_failure_ && !failure_) failure_ = last_failure_;
-  if (std::exchange(moved_, false)) ++evaluations_;
-}
-
-template <class F, class Real>
-void ChargedParticles<F, Real>::evaluate(const ParticleSystem<Real>& s, bool energy) {
-  const Real time = s.time();
-  if (known_ && known_->version == s.version() && known_->time == time && (known_->energy || !energy)) return;
-  ForceSink<Real> sink(acceleration_, s, {.energy = energy}, &workspace_, longest_kick_);
-  sink.set_gyrations(rate_);
-  forces_.add_to(sink, s);
-  if (energy) potential_ = sink.potential();
-  last_failure_ = sink.failure();
-  known_ = Known{s.version(), time, energy};
+  if (!observing_) forces_.count();
 }
 
 template <class F, class Real> EnergyTerms<Real> ChargedParticles<F, Real>::energy(const ParticleSystem<Real>& s) {
-  evaluate(s, true);
-  if (!relativistic()) return {kinetic_energy(s), potential_};
+  forces_.evaluate(s, true);
+  if (!relativistic()) return {kinetic_energy(s), forces_.potential()};
   using Wide = detail::FastNumber<Real>;
   const Real kinetic = sum_over<Real>(s.size(), [&](Index i) {
     // m c^2 (gamma - 1) without the difference
@@ -147,17 +128,17 @@ template <class F, class Real> EnergyTerms<Real> ChargedParticles<F, Real>::ener
     const Wide gamma = detail::gamma_of_velocity(v, Wide(c_)), u2 = gamma * gamma * norm2(v);
     return s.masses()[i] * Real(u2 / (gamma + Wide(1)));
   });
-  return {kinetic, potential_};
+  return {kinetic, forces_.potential()};
 }
 
 template <class F, class Real>
 void ChargedParticles<F, Real>::accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
-  evaluate(s, false);
+  forces_.evaluate(s, false);
   if (a.size() != s.size()) a = VectorColumn<Real>(s.size());
   using Wide = detail::FastNumber<Real>;
   for (Index i = 0; i < s.size(); ++i) {
     const Vec3<Real> v = s.velocities()[i];
-    Vec3<Real> all = std::as_const(acceleration_)[i] + cross(v, Vec3<Real>(std::as_const(rate_)[i]));
+    Vec3<Real> all = forces_.acceleration(i) + cross(v, forces_.rate(i));
     if (relativistic()) {  // u' = all, v = u/gamma
       const Real gamma(detail::gamma_of_velocity(detail::whole_velocity(s, i), Wide(c_)));
       all = (all - dot(v, all) / (c_ * c_) * v) / gamma;
@@ -166,30 +147,16 @@ void ChargedParticles<F, Real>::accelerations(const ParticleSystem<Real>& s, Vec
   }
 }
 
-template <class F, class Real> Evaluations ChargedParticles<F, Real>::evaluations() const {
-  Evaluations all{.force = evaluations_};
-  const auto* list = workspace_.find<NeighborList>();
-  if (list != nullptr && list->statistics().searches > 0) all.neighbors = list->statistics();
-  return all;
-}
-
 template <class F, class Real>
 void ChargedParticles<F, Real>::save(SavedState& saved, const std::string& prefix) const {
-  detail::save_signature(saved, prefix, forces_);
   detail::save_signature(saved, prefix + "charges/", options_);
-  save_value(saved, prefix + "evaluations", evaluations_);
-  save_value(saved, prefix + "moved", moved_);
+  forces_.save(saved, prefix);
 }
 
 template <class F, class Real>
 void ChargedParticles<F, Real>::load(const SavedState& saved, const std::string& prefix) {
-  detail::check_signature(saved, prefix, forces_);
   detail::check_signature(saved, prefix + "charges/", options_);
-  load_value(saved, prefix + "evaluations", evaluations_);
-  load_value(saved, prefix + "moved", moved_);
-  known_.reset();
-  failure_.reset();
-  last_failure_.reset();
+  forces_.load(saved, prefix);
 }
 
 }  // namespace noether

@@ -25,6 +25,7 @@
 #include "integrators/all_schemes.hpp"
 #include "integrators/charged_particles.hpp"
 #include "integrators/damped.hpp"
+#include "integrators/k_symplectic.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/minimize.hpp"
@@ -158,6 +159,7 @@ Parts standard_parts() {
   parts.add_hamiltonian<KineticPotentialOptions>();
   parts.add_hamiltonian<WisdomHolmanOptions>();
   parts.add_hamiltonian<ChargedParticlesOptions>();
+  parts.add_hamiltonian<KSymplecticOptions>();
   parts.add_thermostat<LangevinOptions>();
   parts.add_thermostat<VelocityRescalingOptions>();
   parts.add_force<Gravity>();

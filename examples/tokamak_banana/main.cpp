@@ -39,9 +39,9 @@ Outcome follow(const char* name, AnyIntegrator<double> by) {
   Simulation sim(ion(), std::move(by), step);
   CanonicalMomentum around;
   around.watch(motion);
-  auto& energy = sim.every(10, Energy{});
-  auto& p = sim.every(10, around);
-  const Outcome outcome = sim.run(60'000);
+  auto& energy = sim.every(50, Energy{});
+  auto& p = sim.every(50, around);
+  const Outcome outcome = sim.run(250'000);
   fmt::print("{:<16} energy within {:.1e}, canonical momentum within {:.1e}\n", name, energy.worst(), p.worst());
   return outcome;
 }
@@ -54,11 +54,11 @@ int main() {
   at_center.watch(motion);
   at_ion.watch(motion);
   at_ion.at = MomentPlace::particle;
-  auto& energy = sim.every(10, Energy{});
-  auto& center = sim.every(1, at_center);
-  auto& ion_itself = sim.every(1, at_ion);
-  sim.every(100, io::TrajectoryWriter{"run.h5"});
-  const Outcome outcome = sim.run(60'000);
+  auto& energy = sim.every(50, Energy{});
+  auto& center = sim.every(50, at_center);
+  auto& ion_itself = sim.every(50, at_ion);
+  sim.every(500, io::TrajectoryWriter{"run.h5"});
+  const Outcome outcome = sim.run(250'000);
   fmt::print("{}\nenergy within {:.0e}\n{}\n", outcome, energy.worst(), io::digest(sim.particles()));
   if (!outcome.ok()) return exit_code(outcome);
   fmt::print("mu swings by {:.1e} at the ion, by {:.1e} at its gyrocentre; a bounce takes {:.0f} gyrations\n",

@@ -1,4 +1,4 @@
-// A proton of 10 MeV in the Earth's dipole: it gyrates, bounces between its mirror points and drifts around the Earth.
+// A proton of 1 MeV in the Earth's dipole: it gyrates, bounces between its mirror points and drifts around the Earth.
 #include "engine/simulation.hpp"
 #include "forces/electromagnetic_fields.hpp"
 #include "integrators/all_schemes.hpp"
@@ -25,7 +25,7 @@ const MagneticDipole dipole{.moment = {0, 0, -8.05e15}};
 ParticleSystem<double> proton() {
   ParticleSystem<double> s(unit_system("si"));
   s.add_column<Charge>();
-  s.add("proton", 1.67262192369e-27, {4 * earth, 0, 0}, {0, 2.18711e7, 3.78818e7});
+  s.add("proton", 1.67262192369e-27, {4 * earth, 0, 0}, {0, 6.91446e6, 1.197618e7});
   s.column<Charge>()[0] = 1.602176634e-19;
   return s;
 }
@@ -38,13 +38,13 @@ int main() {
   MagneticMoment moment;
   moment.watch({.forces = {AnyForce<double>(InField(dipole))}, .c = light});
   auto& energy = sim.every(10, Energy{});
-  auto& mu = sim.every(1, moment);
-  sim.every(10, io::TrajectoryWriter{"run.h5"});
-  const Outcome outcome = sim.run(15'000);
+  auto& mu = sim.every(5, moment);
+  sim.every(50, io::TrajectoryWriter{"run.h5"});
+  const Outcome outcome = sim.run(30'000);
   fmt::print("{}\nenergy within {:.0e}\n{}\n", outcome, energy.worst(), io::digest(sim.particles()));
   if (!outcome.ok()) return exit_code(outcome);
   const double turned = std::atan2(mu.center()[1], mu.center()[0]);
   fmt::print("mu swings by {:.1e}; {} turning points, a bounce takes {:.3f} s; around the Earth in {:.0f} s\n",
-             mu.swing(), mu.turns(), mu.bounce_period(), 2 * std::numbers::pi / std::abs(turned) * 30);
+             mu.swing(), mu.turns(), mu.bounce_period(), 2 * std::numbers::pi / std::abs(turned) * 60);
   return 0;
 }

@@ -14,6 +14,7 @@
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
+#include "integrators/k_symplectic.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
@@ -263,12 +264,12 @@ std::vector<Twin> charged_twins() {
   std::vector<Twin> twins;
   const auto add = [&](const std::string& name, const ChargedParticlesOptions& options, const std::string& keys,
                        const Scheme& scheme) {
-    ForceField<double> forces;
-    forces.add(InField(Tokamak{.B0 = 1, .R0 = 1, .safety = 2}));
-    forces.add(InField(UniformElectromagnetic{.E = {0.01, 0, 0.02}, .B = {0, 0, 0.1}}));
+    ForceField<double> both;
+    both.add(InField(Tokamak{.B0 = 1, .R0 = 1, .safety = 2}));
+    both.add(InField(UniformElectromagnetic{.E = {0.01, 0, 0.02}, .B = {0, 0, 0.1}}));
     twins.push_back({.name = "charges, " + name,
                      .bodies = s,
-                     .program = compose(ChargedParticles<ForceField<double>>(forces, options), scheme),
+                     .program = compose(ChargedParticles<ForceField<double>>(both, options), scheme),
                      .step = 0.1,
                      .hamiltonian = "[hamiltonian]\ntype='charged_particles'\n" + keys +
                                     "[[hamiltonian.field]]\ntype='tokamak'\nB0=1\nR0=1\nsafety=2\n"
@@ -276,6 +277,16 @@ std::vector<Twin> charged_twins() {
                      .method = std::string(scheme.name),
                      .place = "[[particles.body]]\nname='replaced too'\nmass=1\ncharge=1\nx=[1,0,0]\nv=[0,0,0]\n"});
   };
+  ForceField<double> forces;
+  forces.add(InField(Tokamak{.B0 = 1, .R0 = 1, .safety = 2}));
+  twins.push_back({.name = "charges, one direction after the other",
+                   .bodies = s,
+                   .program = compose(KSymplectic<ForceField<double>>(forces), schemes::yoshida_4),
+                   .step = 0.1,
+                   .hamiltonian = "[hamiltonian]\ntype='k_symplectic'\n"
+                                  "[[hamiltonian.field]]\ntype='tokamak'\nB0=1\nR0=1\nsafety=2\n",
+                   .method = "yoshida_4",
+                   .place = "[[particles.body]]\nname='replaced too'\nmass=1\ncharge=1\nx=[1,0,0]\nv=[0,0,0]\n"});
   add("the exact helix", {}, "", schemes::blanes_moan_s6);
   add("Boris", {.rotation = Rotation::boris}, "rotation='boris'\n", schemes::yoshida_4);
   add("cycles", {.rotation = Rotation::hyper_boris, .cycles = 3, .gyrophase_order = 4},

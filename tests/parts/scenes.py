@@ -202,6 +202,7 @@ HAMILTONIANS = {
     "kinetic_potential": Case(PLANETS, forces(GRAVITY)),
     "wisdom_holman": Case(PLANETS, '[hamiltonian]\ntype = "wisdom_holman"\nG = 1\n'),
     "charged_particles": Case(CHARGES, fields(SOLENOID)),
+    "k_symplectic": Case(CHARGES, fields(SOLENOID, kind="k_symplectic"), rivals=WHOLE_STEPS),
 }
 
 FIELDS = {

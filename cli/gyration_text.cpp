@@ -1,0 +1,47 @@
+#include "cli/gyration_text.hpp"
+
+#include "scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace noether {
+
+std::string gyration_text(const Scene& scene) {
+  const ForceField<double> forces = forces_of(scene);
+  if (!forces.claims().gyrates) return "";
+  ParticleSystem<double> s = scene.particles;
+  s.clock() = Clock<double>::fixed(scene.integrator.start, scene.integrator.step);
+  VectorColumn<double> a(s.size()), rates(s.size());
+  ForceSink<double> sink(a, s, {});
+  sink.set_gyrations(rates);
+  for (const AnyForce<double>& force : forces.terms()) {
+    if (force.claims().gyrates) force.add_to(sink, s);
+  }
+  Index fastest = 0;
+  double most = -1;
+  for (Index i = 0; i < s.size(); ++i) {
+    double rate = Vec3<double>(std::as_const(rates)[i]).norm();
+    if (const auto& c = scene.hamiltonian.splitting.c) {
+      const double beta = Vec3<double>(s.velocities()[i]).norm() / *c;
+      rate *= std::sqrt((1 - beta) * (1 + beta));
+    }
+    if (rate <= most) continue;
+    most = rate;
+    fastest = i;
+  }
+  const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
+  if (!(most > 0)) return "gyration: no charge turns at the start";
+  const double turn = 2 * std::numbers::pi / most;
+  if (scene.integrator.adaptive()) {
+    return fmt::format("gyration: '{}' turns once in {:.4g}{} at the start", s.name(fastest), turn, unit);
+  }
+  const double angle = most * scene.integrator.step;
+  return fmt::format("gyration: '{}' turns by {:.3g} rad a step at the start, {:.3g} steps a turn", s.name(fastest),
+                     angle, turn / scene.integrator.step);
+}
+
+}  // namespace noether

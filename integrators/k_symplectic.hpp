@@ -1,0 +1,131 @@
+#pragma once
+/// Charges in fields, symplectic in x and m v + q A: one direction of space after the other.
+
+#include "engine/concepts.hpp"
+#include "engine/description.hpp"
+#include "engine/erasure.hpp"
+#include "forces/sum.hpp"
+#include "integrators/field_forces.hpp"
+#include "integrators/kinetic_potential.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace noether {
+
+/// Parameters of `KSymplectic`.
+struct KSymplecticOptions {
+  std::int64_t nodes = 8;  ///< of the integrals of B along the lines on which charges move
+
+  static constexpr auto describe() {
+    return part<KSymplecticOptions>(
+        "k_symplectic", "charges in fields, symplectic in x and m v + q A: motion along x, y and z, one after the other",
+        formula("X: x' = v_x, v' = v_x e_x x q B/m;  Y, Z likewise;  B: m v' = q E + other forces"),
+        source("HeEtAl2017, ZhouEtAl2017"), letter('B', "kicks by electric fields and other forces"),
+        letter('X', "motion along x"), letter('Y', "motion along y"), letter('Z', "motion along z"),
+        field<&KSymplecticOptions::nodes>("nodes", "1",
+                                          "of Gauss's quadrature, by which B is integrated along each line"));
+  }
+  /// @throws Error  for less than 1 and more than 32 nodes
+  void check() const;
+
+  /// Nothing in itself but the motion: methods that do not split serve it too.
+  std::tuple<> forces() const { return {}; }
+  template <class Real> AnyHamiltonian<Real> split(ForceField<Real> forces) const;
+};
+
+/// Charges in fields, as flows of parts of H = m v^2/2 + q phi in the structure that the magnetic field gives to (x, v):
+///
+///     X:  x -> x + h v_x e_x,  v -> v + e_x x int (q B/m) dx along that line;  Y and Z likewise
+///     B:  v -> v + h (F + q E)/m
+///
+/// Each is the exact flow of m v_x^2/2 and so on, so the step is symplectic in x and p = m v + q A, with no A to be known.
+/// The integrals are those of Gauss's quadrature: exact for polynomials, to rounding where B is smooth on the way of a
+/// step. Where it is not, what is lost is the symplectic form, not the order. Basic word X Y Z B Z Y X, which
+/// compositions join in X. Other forces do not depend on velocities.
+/// @cost `nodes` evaluations of the fields for each of X, Y, Z, and one of all forces per B
+/// @source HeEtAl2017
+template <class F, class Real = double> class KSymplectic {
+ public:
+  using real = Real;
+
+  /// @throws SchemeMismatch  if a force depends on velocities otherwise than fields do
+  explicit KSymplectic(F forces, KSymplecticOptions options = {});
+
+  std::string name() const { return "k_symplectic"; }
+  HamiltonianClaims claims() const {
+    const ForceClaims forces = forces_.claims();
+    return {.alphabet = "BXYZ",
+            .timed = "X",
+            .basic = "XYZBZYX",
+            .kicks = "B",
+            .quadratic_kinetic = false,
+            .energy = forces.energy,
+            .time_dependent = forces.time_dependent,
+            .dissipative = forces.dissipative,
+            .no_action = "its momenta are m v + q A, and steps know v alone, so the motion has no action here",
+            .velocity_forces = true,
+            .neighbors = true,
+            .keeps_momentum = forces.keeps_momentum,
+            .keeps_angular_momentum = forces.keeps_angular_momentum};
+  }
+  void bind(ParticleSystem<Real>& s);
+  void expect_kicks(double longest) { forces_.expect_kicks(longest); }
+  bool set_neighbor_options(const NeighborOptions& options) {
+    forces_.set_neighbor_options(options);
+    return true;
+  }
+  void open(ParticleSystem<Real>& /*inertial already*/) {}
+  void close(ParticleSystem<Real>& /*inertial already*/) {}
+  void flow(char letter, ParticleSystem<Real>& s, const Real& h);
+  /// @throws LogicError  always
+  Real flow_with_action(char /*letter*/, ParticleSystem<Real>& /*s*/, const Real& /*h*/) {
+    throw LogicError("motion in the coordinates x and v of a magnetic field has no action");
+  }
+  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) {
+    forces_.evaluate(s, true);
+    return {kinetic_energy(s), forces_.potential()};
+  }
+  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a);
+  void observe(std::optional<Request> wanted) { observing_ = wanted; }
+  const std::optional<Failure>& failure() const { return forces_.failure(); }
+  Evaluations evaluations() const { return forces_.evaluations(); }
+  void save(SavedState& saved, const std::string& prefix) const {
+    detail::save_signature(saved, prefix + "lines/", options_);
+    forces_.save(saved, prefix);
+  }
+  void load(const SavedState& saved, const std::string& prefix) {
+    detail::check_signature(saved, prefix + "lines/", options_);
+    forces_.load(saved, prefix);
+  }
+
+ private:
+  void move_along(int axis, ParticleSystem<Real>& s, const Real& h);
+
+  detail::FieldForces<F, Real> forces_, on_lines_;  ///< at the particles; at the nodes of their lines
+  KSymplecticOptions options_;
+  std::vector<Real> places_, weights_;  ///< in [0, 1]
+  ParticleSystem<Real> there_;
+  VectorColumn<Real> integrals_{0};
+  std::optional<Request> observing_;
+};
+
+template <class Real> AnyHamiltonian<Real> KSymplecticOptions::split(ForceField<Real> forces) const {
+  return KSymplectic<ForceField<Real>, Real>(std::move(forces), *this);
+}
+
+template <class F> KSymplectic(F) -> KSymplectic<typename detail::OnCharges<F>::type, double>;
+template <class F> KSymplectic(F, KSymplecticOptions) -> KSymplectic<typename detail::OnCharges<F>::type, double>;
+
+extern template class KSymplectic<ForceField<double>>;
+extern template class KSymplectic<ForceField<Quad>, Quad>;
+extern template struct detail::HamiltonianModel<KSymplectic<ForceField<double>>>;
+extern template struct detail::HamiltonianModel<KSymplectic<ForceField<Quad>, Quad>>;
+
+}  // namespace noether
+
+#include "integrators/k_symplectic_impl.hpp"  // IWYU pragma: keep

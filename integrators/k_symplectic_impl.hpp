@@ -1,0 +1,87 @@
+#pragma once
+/// Definitions of integrators/k_symplectic.hpp; included by it.
+
+#include "integrators/k_symplectic.hpp"
+
+#include "integrators/methods/line_table.hpp"
+#include "integrators/scheme.hpp"
+
+namespace noether {
+
+namespace detail {
+/// The fields among forces, where they can be told apart; else all.
+template <class F, class Real> F fields_among(const F& forces) {
+  if constexpr (std::is_same_v<F, ForceField<Real>>) {
+    ForceField<Real> fields;
+    for (const AnyForce<Real>& term : forces.terms()) {
+      if (term.claims().gyrates) fields.add(term);
+    }
+    return fields;
+  } else {
+    return forces;
+  }
+}
+}  // namespace detail
+
+template <class F, class Real>
+KSymplectic<F, Real>::KSymplectic(F forces, KSymplecticOptions options)
+    : forces_(forces, "k_symplectic"), on_lines_(detail::fields_among<F, Real>(forces), "k_symplectic"), options_(options) {
+  options_.check();
+  const GaussNodes gauss = gauss_nodes(static_cast<int>(options_.nodes));
+  for (std::size_t k = 0; k < gauss.c.size(); ++k) {
+    places_.push_back(detail::weight_in<Real>(gauss.c[k]));
+    weights_.push_back(detail::weight_in<Real>(gauss.b[k]));
+  }
+}
+
+template <class F, class Real> void KSymplectic<F, Real>::bind(ParticleSystem<Real>& s) {
+  forces_.bind(s);
+  there_ = s;
+  there_.keep_low_words(false);
+  on_lines_.bind(there_);
+  integrals_ = VectorColumn<Real>(s.size());
+}
+
+template <class F, class Real> void KSymplectic<F, Real>::flow(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if (letter != 'B') return move_along(letter - 'X', s, h);
+  forces_.evaluate(s, false);
+  for (Index i = 0; i < s.size(); ++i) {
+    s.shift(i, Vec3<Real>(Vec3<Real>::Zero()), Vec3<Real>(h * forces_.acceleration(i)));
+  }
+  if (!observing_) forces_.count();
+}
+
+template <class F, class Real>
+void KSymplectic<F, Real>::move_along(int axis, ParticleSystem<Real>& s, const Real& h) {
+  // Means of Omega over the line of each particle.
+  integrals_.set_zero();
+  there_.clock() = s.clock();
+  for (std::size_t node = 0; node < places_.size(); ++node) {
+    for (Index i = 0; i < s.size(); ++i) {
+      Vec3<Real> x = std::as_const(s).positions()[i];
+      x[axis] += places_[node] * h * std::as_const(s).velocities()[i][axis];
+      there_.positions().set(i, x);
+    }
+    there_.moved();
+    on_lines_.evaluate(there_, false);
+    for (Index i = 0; i < s.size(); ++i) integrals_.add(i, Vec3<Real>(weights_[node] * on_lines_.rate(i)));
+  }
+  for (Index i = 0; i < s.size(); ++i) {
+    Vec3<Real> way = Vec3<Real>::Zero();
+    way[axis] = h * std::as_const(s).velocities()[i][axis];
+    s.shift(i, way, cross(way, Vec3<Real>(std::as_const(integrals_)[i])));
+  }
+  s.moved();
+  if (!observing_) forces_.note_move();
+}
+
+template <class F, class Real>
+void KSymplectic<F, Real>::accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
+  forces_.evaluate(s, false);
+  if (a.size() != s.size()) a = VectorColumn<Real>(s.size());
+  for (Index i = 0; i < s.size(); ++i) {
+    a.set(i, Vec3<Real>(forces_.acceleration(i) + cross(Vec3<Real>(s.velocities()[i]), forces_.rate(i))));
+  }
+}
+
+}  // namespace noether
