@@ -44,7 +44,8 @@ std::vector<std::pair<std::string, PartInfo>> described_parts(const Parts& parts
   for (auto& part : other_parts()) all.push_back(std::move(part));
   for (const BuilderKind& kind : builders()) all.emplace_back("builder", kind.info);
   for (const auto& kind : parts.forces()) {
-    all.emplace_back(kind.field ? "field" : "force", kind.particles > 0 ? with_particles(kind.info, kind.particles) : kind.info);
+    all.emplace_back(kind.field ? "field" : "force",
+                     kind.particles > 0 ? with_particles(kind.info, kind.particles) : kind.info);
   }
   for (const auto& kind : parts.constraints()) {
     all.emplace_back("constraint", kind.of_structure ? kind.info : with_particles(kind.info, kind.particles));

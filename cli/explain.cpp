@@ -137,7 +137,8 @@ void sort_parts(const Scene& scene, Explanation& e) {
   if (scene.system) e.in.push_back("system " + scene.system->name);
   for (const SceneForce& force : scene.hamiltonian.forces) {
     const bool wide = force.force.in_quad().has_value();
-    e.in.push_back((force.force.claims().gyrates ? "field " : "force ") + force.name + held_terms(force, scene.particles) +
+    e.in.push_back((force.force.claims().gyrates ? "field " : "force ") + force.name +
+                   held_terms(force, scene.particles) +
                    (wide ? "" : ", in double precision only: compare has no reference for it"));
   }
   if (const auto& bath = scene.hamiltonian.thermostat) {

@@ -28,8 +28,9 @@ template <class Real> struct FieldValues {
 ///       static constexpr ElectromagneticClaims field_claims() { return {.vector_potential = false}; }  // optional
 ///     };
 template <class F, class Real>
-concept ElectromagneticField =
-    requires(const F& field, const Real& t, const Vec3<Real>& x, FieldValues<Real>& values) { field.at(t, x, values); };
+concept ElectromagneticField = requires(const F& field, const Real& t, const Vec3<Real>& x, FieldValues<Real>& values) {
+  field.at(t, x, values);
+};
 
 /// What a field says of itself.
 struct ElectromagneticClaims {
@@ -92,8 +93,9 @@ template <class F> struct InField : F {
     const Real t = s.time();
     const bool momenta = out.wants_field_momenta();
     if (momenta && !detail::field_claims<F>().vector_potential) {
-      out.fail({.quantity = "vector potential",
-                .message = "the field '" + detail::name_of(static_cast<const F&>(*this)) + "' tells no vector potential"});
+      out.fail(
+          {.quantity = "vector potential",
+           .message = "the field '" + detail::name_of(static_cast<const F&>(*this)) + "' has no vector potential"});
     }
     for (Index i = 0; i < s.size(); ++i) {
       const Real& q = charges[i];

@@ -2,7 +2,7 @@
 
 namespace noether {
 
-#define NOETHER_FIELD(FIELD)                             \
+#define NOETHER_FIELD(FIELD)                                  \
   template struct detail::ForceModel<InField<FIELD>, double>; \
   template struct detail::ForceModel<InField<FIELD>, Quad>;
 NOETHER_FIELD(UniformElectromagnetic)

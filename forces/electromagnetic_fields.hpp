@@ -16,7 +16,7 @@ inline constexpr const char* magnetic_unit = "mass/charge/time";
 
 /// @throws Error  unless it is above 0
 inline void expect_above_zero(std::string_view key, double value, const char* what) {
-  if (!(value > 0)) refuse_field(key, value, std::string("is no ") + what + "; a number above 0 is expected");
+  if (!(value > 0)) refuse_field(key, value, std::string("is not a valid ") + what + "; a number above 0 is expected");
 }
 }  // namespace detail
 
@@ -28,10 +28,11 @@ struct UniformElectromagnetic {
   std::array<double, 3> B = {0, 0, 0};  ///< [mass/time/charge]
 
   static constexpr auto describe() {
-    return part<UniformElectromagnetic>("uniform_electromagnetic", "the same electric and magnetic field everywhere",
-                                formula("E, B constant;  phi = - E . x,  A = B x x / 2"), source("Jackson1999"),
-                                field<&UniformElectromagnetic::E>("E", detail::electric_unit, "electric field"),
-                                field<&UniformElectromagnetic::B>("B", detail::magnetic_unit, "magnetic field"));
+    return part<UniformElectromagnetic>(
+        "uniform_electromagnetic", "the same electric and magnetic field everywhere",
+        formula("E, B constant;  phi = - E . x,  A = B x x / 2"), source("Jackson1999"),
+        field<&UniformElectromagnetic::E>("E", detail::electric_unit, "electric field"),
+        field<&UniformElectromagnetic::B>("B", detail::magnetic_unit, "magnetic field"));
   }
 
   template <class Real> void at(const Real& /*t*/, const Vec3<Real>& x, FieldValues<Real>& field) const {
@@ -114,7 +115,8 @@ struct MagneticDipole {
 
 /// An axisymmetric tokamak with circular magnetic surfaces about a ring of radius R0.
 ///
-///     B = (B0/R) (R0 e_phi + (- z e_R + (R - R0) e_z)/q),   R A_phi = B0 ((R - R0)^2 + z^2)/2 q,   A_z = - B0 R0 ln(R/R0)
+///     B = (B0/R) (R0 e_phi + (- z e_R + (R - R0) e_z)/q)
+///     R A_phi = B0 ((R - R0)^2 + z^2)/2 q,   A_z = - B0 R0 ln(R/R0)
 ///
 /// On the axis of symmetry (R = 0) it is infinite.
 struct Tokamak {
@@ -133,7 +135,7 @@ struct Tokamak {
   /// @throws Error  for a radius that is not above 0 and a q that is 0
   void check() const {
     detail::expect_above_zero("R0", R0, "radius");
-    if (safety == 0) refuse_field("safety", safety, "is no safety factor; a number other than 0 is expected");
+    if (safety == 0) refuse_field("safety", safety, "is not a valid safety factor; a number other than 0 is expected");
   }
 
   template <class Real> void at(const Real& /*t*/, const Vec3<Real>& x, FieldValues<Real>& field) const {
@@ -186,15 +188,14 @@ struct PlaneWave {
   double phase = 0.0;                           ///< [angle]
 
   static constexpr auto describe() {
-    return part<PlaneWave>(
-        "plane_wave", "a plane electromagnetic wave, linearly polarized",
-        formula("E = E0 cos(omega (n.x/c - t) + phase),  B = n x E/c"), source("Jackson1999"),
-        field<&PlaneWave::E0>("E0", detail::electric_unit, "amplitude, across the direction")
-            .required("[\"1e9 V/m\", \"0 V/m\", \"0 V/m\"]"),
-        field<&PlaneWave::direction>("direction", "1", "n, in which it goes, of any length"),
-        field<&PlaneWave::omega>("omega", "1/time", "angular frequency").required("\"2e15/s\""),
-        field<&PlaneWave::c>("c", "length/time", "speed of light").required("\"299792458 m/s\""),
-        field<&PlaneWave::phase>("phase", "angle"));
+    return part<PlaneWave>("plane_wave", "a plane electromagnetic wave, linearly polarized",
+                           formula("E = E0 cos(omega (n.x/c - t) + phase),  B = n x E/c"), source("Jackson1999"),
+                           field<&PlaneWave::E0>("E0", detail::electric_unit, "amplitude, across the direction")
+                               .required("[\"1e9 V/m\", \"0 V/m\", \"0 V/m\"]"),
+                           field<&PlaneWave::direction>("direction", "1", "n, in which it goes, of any length"),
+                           field<&PlaneWave::omega>("omega", "1/time", "angular frequency").required("\"2e15/s\""),
+                           field<&PlaneWave::c>("c", "length/time", "speed of light").required("\"299792458 m/s\""),
+                           field<&PlaneWave::phase>("phase", "angle"));
   }
   static constexpr ElectromagneticClaims field_claims() { return {.time_dependent = true}; }
   /// @throws Error  for a direction without length, and for an amplitude that is not across it
@@ -202,7 +203,7 @@ struct PlaneWave {
     detail::expect_above_zero("omega", omega, "frequency");
     detail::expect_above_zero("c", c, "speed of light");
     const Vec3<double> n = detail::widened<double>(direction), E = detail::widened<double>(E0);
-    if (!(norm2(n) > 0)) refuse_field("direction", direction, "is no direction");
+    if (!(norm2(n) > 0)) refuse_field("direction", direction, "has no length; a direction is expected");
     if (std::abs(dot(n, E)) > 1e-12 * std::sqrt(norm2(n) * norm2(E))) {
       refuse_field("E0", E0, "is not across the direction of the wave; E0 . direction = 0 is expected");
     }
@@ -238,8 +239,8 @@ struct RadioFrequencyGap {
     return part<RadioFrequencyGap>(
         "radio_frequency_gap", "the gap of an accelerator, in which a field along z oscillates",
         formula("E_z = E0 exp(-z^2/length^2) cos(omega t + phase), E_r and B_phi to first order in r"),
-        source("Wangler2008"), field<&RadioFrequencyGap::E0>("E0", detail::electric_unit, "in the middle of the gap")
-                                   .required("\"10e6 V/m\""),
+        source("Wangler2008"),
+        field<&RadioFrequencyGap::E0>("E0", detail::electric_unit, "in the middle of the gap").required("\"10e6 V/m\""),
         field<&RadioFrequencyGap::length>("length", "length", "of the gap: g = exp(- z^2/length^2)")
             .required("\"2 cm\""),
         field<&RadioFrequencyGap::omega>("omega", "1/time", "angular frequency").required("\"8e9/s\""),
@@ -267,7 +268,7 @@ struct RadioFrequencyGap {
 
 namespace detail {  // compiled once, in electromagnetic_fields.cpp
 
-#define NOETHER_FIELD(FIELD)                             \
+#define NOETHER_FIELD(FIELD)                                 \
   extern template struct ForceModel<InField<FIELD>, double>; \
   extern template struct ForceModel<InField<FIELD>, Quad>;
 NOETHER_FIELD(UniformElectromagnetic)

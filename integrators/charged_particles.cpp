@@ -6,14 +6,16 @@ namespace noether {
 
 void ChargedParticlesOptions::check() const {
   const bool hyper = rotation == Rotation::hyper_boris;
-  if (cycles < 1) refuse_field("cycles", fmt::format("{}", cycles), "is no count of turns; 1 or more is expected");
+  if (cycles < 1)
+    refuse_field("cycles", fmt::format("{}", cycles), "is not a valid count of turns; 1 or more is expected");
   if (gyrophase_order < 2 || gyrophase_order > 16 || gyrophase_order % 2 != 0) {
     refuse_field("gyrophase_order", fmt::format("{}", gyrophase_order),
-                 "is no order of an angle; an even number from 2 to 16 is expected");
+                 "is not a valid order of an angle; an even number from 2 to 16 is expected");
   }
   const ChargedParticlesOptions usual{};
   if (!hyper && cycles != usual.cycles) {
-    refuse_field("cycles", fmt::format("{}", cycles), "counts turns of rotation = \"hyper_boris\"; give that, or take it out");
+    refuse_field("cycles", fmt::format("{}", cycles),
+                 "counts turns of rotation = \"hyper_boris\"; give that, or take it out");
   }
   if (!hyper && gyrophase_order != usual.gyrophase_order) {
     refuse_field("gyrophase_order", fmt::format("{}", gyrophase_order),

@@ -44,14 +44,15 @@ template <> struct EnumNames<Relativistic> {
 /// Parameters of `ChargedParticles`.
 struct ChargedParticlesOptions {
   Rotation rotation = Rotation::exact;
-  std::int64_t cycles = 2;         ///< of `hyper_boris`: turns in a kick
+  std::int64_t cycles = 2;           ///< of `hyper_boris`: turns in a kick
   std::int64_t gyrophase_order = 2;  ///< of `hyper_boris`: of the angle of each
   Relativistic relativistic = Relativistic::no;
   std::optional<double> c = {};  ///< speed of light [length/time]; default: that of the unit system
 
   static constexpr auto describe() {
     return part<ChargedParticlesOptions>(
-        "charged_particles", "charges in fields: free motion A, and kicks B that turn velocities about the magnetic field",
+        "charged_particles",
+        "charges in fields: free motion A, and kicks B that turn velocities about the magnetic field",
         formula("x' = v,  m v' = q (E(t, x) + v x B(t, x)) + other forces"),
         source("Boris1970, QinEtAl2013, HeEtAl2015, Vay2008, HigueraCary2017, ZenitaniKato2020"), letter('A', "drifts"),
         letter('B', "kicks and turns"),
@@ -110,16 +111,17 @@ template <class F, class Real = double> class ChargedParticles {
   const F& forces() const { return forces_.forces(); }
   HamiltonianClaims claims() const {
     const ForceClaims forces = forces_.claims();
+    const bool exact = options_.rotation == Rotation::exact && !relativistic();
     return {.alphabet = "AB",
-            .inexact = options_.rotation == Rotation::exact && !relativistic() ? "" : "B",
-            .basic = "ABA",
+            .inexact = exact ? "" : "B",
+            .basic = exact ? "BAB" : "ABA",  // no two maps of order 2 are joined
             .kicks = "B",
             .quadratic_kinetic = false,
             .symplectic = false,
             .energy = forces.energy,
             .time_dependent = forces.time_dependent,
             .dissipative = forces.dissipative,
-            .no_action = "its kicks turn velocities, which is no flow of a Hamiltonian, so the motion has no action",
+            .no_action = "no Hamiltonian has its kicks, which turn velocities, as a flow, so the motion has no action",
             .coordinates = std::uint8_t(relativistic() ? proper_velocities : 0),
             .inertial = !relativistic(),
             .velocity_forces = true,

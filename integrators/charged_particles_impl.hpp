@@ -99,10 +99,14 @@ template <class F, class Real>
 Vec3<Real> ChargedParticles<F, Real>::pushed(const Vec3<Real>& u, Index i, const Real& h) const {
   const Vec3<Real> a = forces_.acceleration(i), rate = forces_.rate(i);
   switch (options_.relativistic) {
-    case Relativistic::boris: return boris_push(u, a, rate, c_, h);
-    case Relativistic::vay: return vay_push(u, a, rate, c_, h);
-    case Relativistic::higuera_cary: return higuera_cary_push(u, a, rate, c_, h);
-    case Relativistic::no: break;
+    case Relativistic::boris:
+      return boris_push(u, a, rate, c_, h);
+    case Relativistic::vay:
+      return vay_push(u, a, rate, c_, h);
+    case Relativistic::higuera_cary:
+      return higuera_cary_push(u, a, rate, c_, h);
+    case Relativistic::no:
+      break;
   }
   return turned(u, a, rate, turn_, h);
 }

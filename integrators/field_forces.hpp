@@ -102,7 +102,7 @@ template <class F, class Real> class FieldForces {
   VectorColumn<Real> acceleration_{0}, rate_{0};  ///< F/m + q E/m, and q B/m
   Real potential_ = Real(0);
   std::optional<Known> known_;
-  bool moved_ = true;  ///< since the last evaluation that was counted
+  bool moved_ = true;                              ///< since the last evaluation that was counted
   std::optional<Failure> failure_, last_failure_;  ///< of the run; of the last evaluation, whoever asked for it
   NeighborOptions neighbor_options_;
   Workspace workspace_;

@@ -14,7 +14,8 @@ namespace noether {
 
 /// Coefficients of a turn about Omega:
 ///
-///     v -> v + sine v x Omega + versine (v x Omega) x Omega,   sine = sin(theta)/|Omega|, versine = (1 - cos theta)/Omega^2
+///     v -> v + sine v x Omega + versine (v x Omega) x Omega
+///     sine = sin(theta)/|Omega|,  versine = (1 - cos(theta))/Omega^2
 template <class Real> struct TurnCoefficients { Real sine, versine; };
 
 /// By what angle theta a kick of length h turns velocities about Omega: h |Omega|, or as Boris's steps do.
@@ -73,8 +74,8 @@ template <class Real> class Turn {
   std::array<Real, 8> tangent_{};  ///< tan x = sum tangent_k x^(2 k + 1)
 };
 
-/// By what v changes over h under v' = a + v x Omega, where it turns by the angle of `turn`; the drift a x Omega/Omega^2
-/// is right for any angle.
+/// By what v changes over h under v' = a + v x Omega, where it turns by the angle of `turn`; the drift a x
+/// Omega/Omega^2 is right for any angle.
 template <class Real>
 Vec3<Real> turned(const Vec3<Real>& v, const Vec3<Real>& a, const Vec3<Real>& rate, const Turn<Real>& turn,
                   const Real& h) {
@@ -104,7 +105,8 @@ template <class Real> Real gamma_between(const Vec3<Real>& u, const Vec3<Real>& 
   const Real sigma = Real(1) + norm2(u) / (c * c) - tau2, rest = tau2 + along * along;
   const Real root = sqrt(sigma * sigma + Real(4) * rest);
   const auto positive = sigma >= Real(0);
-  const Real direct = (sigma + root) / Real(2), other = Real(2) * rest / noether::select(positive, Real(1), Real(root - sigma));
+  const Real direct = (sigma + root) / Real(2),
+             other = Real(2) * rest / noether::select(positive, Real(1), Real(root - sigma));
   return sqrt(noether::select(positive, direct, other));
 }
 }  // namespace detail

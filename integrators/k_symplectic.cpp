@@ -6,7 +6,7 @@ namespace noether {
 
 void KSymplecticOptions::check() const {
   if (nodes >= 1 && nodes <= 32) return;
-  refuse_field("nodes", fmt::format("{}", nodes), "is no count of nodes; 1 to 32 are expected");
+  refuse_field("nodes", fmt::format("{}", nodes), "is not a valid count of nodes; 1 to 32 are expected");
 }
 
 template class KSymplectic<ForceField<double>>;

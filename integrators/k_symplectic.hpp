@@ -23,7 +23,8 @@ struct KSymplecticOptions {
 
   static constexpr auto describe() {
     return part<KSymplecticOptions>(
-        "k_symplectic", "charges in fields, symplectic in x and m v + q A: motion along x, y and z, one after the other",
+        "k_symplectic",
+        "charges in fields, symplectic in x and m v + q A: motion along x, y and z, one after the other",
         formula("X: x' = v_x, v' = v_x e_x x q B/m;  Y, Z likewise;  B: m v' = q E + other forces"),
         source("HeEtAl2017, ZhouEtAl2017"), letter('B', "kicks by electric fields and other forces"),
         letter('X', "motion along x"), letter('Y', "motion along y"), letter('Z', "motion along z"),
@@ -38,14 +39,15 @@ struct KSymplecticOptions {
   template <class Real> AnyHamiltonian<Real> split(ForceField<Real> forces) const;
 };
 
-/// Charges in fields, as flows of parts of H = m v^2/2 + q phi in the structure that the magnetic field gives to (x, v):
+/// Charges in fields, as flows of parts of H = m v^2/2 + q phi in the structure that the magnetic field gives to (x,
+/// v):
 ///
 ///     X:  x -> x + h v_x e_x,  v -> v + e_x x int (q B/m) dx along that line;  Y and Z likewise
 ///     B:  v -> v + h (F + q E)/m
 ///
-/// Each is the exact flow of m v_x^2/2 and so on, so the step is symplectic in x and p = m v + q A, with no A to be known.
-/// The integrals are those of Gauss's quadrature: exact for polynomials, to rounding where B is smooth on the way of a
-/// step. Where it is not, what is lost is the symplectic form, not the order. Basic word X Y Z B Z Y X, which
+/// Each is the exact flow of m v_x^2/2 and so on, so the step is symplectic in x and p = m v + q A, with no A to be
+/// known. The integrals are those of Gauss's quadrature: exact for polynomials, to rounding where B is smooth on the
+/// way of a step. Where it is not, what is lost is the symplectic form, not the order. Basic word X Y Z B Z Y X, which
 /// compositions join in X. Other forces do not depend on velocities.
 /// @cost `nodes` evaluations of the fields for each of X, Y, Z, and one of all forces per B
 /// @source HeEtAl2017

@@ -25,7 +25,9 @@ template <class F, class Real> F fields_among(const F& forces) {
 
 template <class F, class Real>
 KSymplectic<F, Real>::KSymplectic(F forces, KSymplecticOptions options)
-    : forces_(forces, "k_symplectic"), on_lines_(detail::fields_among<F, Real>(forces), "k_symplectic"), options_(options) {
+    : forces_(forces, "k_symplectic"),
+      on_lines_(detail::fields_among<F, Real>(forces), "k_symplectic"),
+      options_(options) {
   options_.check();
   const GaussNodes gauss = gauss_nodes(static_cast<int>(options_.nodes));
   for (std::size_t k = 0; k < gauss.c.size(); ++k) {
@@ -51,8 +53,7 @@ template <class F, class Real> void KSymplectic<F, Real>::flow(char letter, Part
   if (!observing_) forces_.count();
 }
 
-template <class F, class Real>
-void KSymplectic<F, Real>::move_along(int axis, ParticleSystem<Real>& s, const Real& h) {
+template <class F, class Real> void KSymplectic<F, Real>::move_along(int axis, ParticleSystem<Real>& s, const Real& h) {
   // Means of Omega over the line of each particle.
   integrals_.set_zero();
   there_.clock() = s.clock();

@@ -44,15 +44,16 @@ struct Here {
 void expect_fields(const ChargeMotion& motion, const char* monitor) {
   const auto is_field = [](const AnyForce<double>& force) { return force.claims().gyrates; };
   if (std::any_of(motion.forces.begin(), motion.forces.end(), is_field)) return;
-  throw Error(fmt::format("monitor '{}' watches charges in fields, but this run has no field; take it out, or add a "
-                          "[[hamiltonian.field]]",
-                          monitor));
+  throw Error(
+      fmt::format("monitor '{}' watches charges in fields, but this run has no field; take it out, or add a "
+                  "[[hamiltonian.field]]",
+                  monitor));
 }
 
 }  // namespace
 
 void CanonicalMomentum::check() const {
-  if (!(norm2(vector_of(axis)) > 0)) refuse_field("axis", axis, "is no direction");
+  if (!(norm2(vector_of(axis)) > 0)) refuse_field("axis", axis, "has no length; a direction is expected");
 }
 
 template <class Real> void CanonicalMomentum::check(const ParticleSystem<Real>& s) const {

@@ -147,10 +147,10 @@ AnyHamiltonian<double> SceneHamiltonian::make(const ParticleSystem<double>& part
     if (force.letter) continue;
     if (force.force.claims().velocity_dependent && !splitting.claims().velocity_forces) {
       if (force.force.claims().gyrates) {
-        throw SchemeMismatch(
-            fmt::format("field '{}' turns velocities, which no kick of {} does; use the Hamiltonian 'charged_particles', "
-                        "or a method for y' = f, such as 'gauss_8'",
-                        force.name, splitting.name));
+        throw SchemeMismatch(fmt::format(
+            "field '{}' turns velocities, which no kick of {} does; use the Hamiltonian 'charged_particles', "
+            "or a method for y' = f, such as 'gauss_8'",
+            force.name, splitting.name));
       }
       throw SchemeMismatch(
           fmt::format("force '{}' depends on velocities, so no kick is its exact flow; use a method for "

@@ -202,7 +202,8 @@ class SceneReader {
     SceneValue& effective = scene_.effective.put("hamiltonian", SceneValue::table());
     effective.put("type", SceneValue::of(type, reader.line("type")));
     effective.put("G", context_.G ? *context_.G : SceneValue::of(scene_.units->G));
-    const auto forces = tables_of(reader, "force"), fields = tables_of(reader, "field"), constraints = tables_of(reader, "constraint");
+    const auto forces = tables_of(reader, "force"), fields = tables_of(reader, "field"),
+               constraints = tables_of(reader, "constraint");
     const SceneValue *thermostat = reader.find("thermostat"), *neighbors = reader.find("neighbors");
     for (const char* key : {"type", "G", "force", "field", "constraint", "rotor", "axes"}) reader.find(key);
     made.splitting = kind->read(reader);
@@ -212,7 +213,8 @@ class SceneReader {
     }
     read_rotor(reader, effective);
     check_splitting(reader, constraints);
-    if (kind->needs_forces && forces.empty() && fields.empty() && constraints.empty() && !has_bodies(scene_.particles)) {
+    if (kind->needs_forces && forces.empty() && fields.empty() && constraints.empty() &&
+        !has_bodies(scene_.particles)) {
       reader.fail("type", fmt::format("{} has no force, so nothing would move anything; add a [[hamiltonian.force]] "
                                       "table",
                                       type));

@@ -135,6 +135,17 @@ struct Collision {
   StopRule rule() const { return closer_than(distance); }
 };
 
+void add_fields(Parts& parts) {
+  parts.add_field<UniformElectromagnetic>();
+  parts.add_field<GradientField>();
+  parts.add_field<MagneticMirror>();
+  parts.add_field<MagneticDipole>();
+  parts.add_field<Tokamak>();
+  parts.add_field<PenningTrap>();
+  parts.add_field<PlaneWave>();
+  parts.add_field<RadioFrequencyGap>();
+}
+
 void add_systems(Parts& parts) {
   parts.add_system<Robertson>();
   parts.add_system<RcLadder>();
@@ -185,14 +196,7 @@ Parts standard_parts() {
   parts.add_force<Traction>();
   parts.add_force<LinearDrag>();
   parts.add_force<Tides>();
-  parts.add_field<UniformElectromagnetic>();
-  parts.add_field<GradientField>();
-  parts.add_field<MagneticMirror>();
-  parts.add_field<MagneticDipole>();
-  parts.add_field<Tokamak>();
-  parts.add_field<PenningTrap>();
-  parts.add_field<PlaneWave>();
-  parts.add_field<RadioFrequencyGap>();
+  add_fields(parts);
   parts.add_constraint<Distance>();
   parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read, Drawn::chain});
   parts.add_constraint<Angle>();

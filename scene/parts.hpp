@@ -82,11 +82,11 @@ class SplittingClaims {
 /// What is split, as a scene asked for it: the Hamiltonian without the forces, constraints and letters of the scene.
 struct SceneSplitting {
   std::string name;
-  SceneValue effective;         ///< its own keys, defaults included
-  SplittingClaims claims;       ///< without forces: `claims()`
+  SceneValue effective;          ///< its own keys, defaults included
+  SplittingClaims claims;        ///< without forces: `claims()`
   std::optional<double> c = {};  ///< speed of light, where its particles are relativistic [length/time]
-  bool only_forces = false;     ///< p^2/2m and forces are all of it: methods for y' = f serve it too
-  std::vector<SceneForce> own;  ///< those it has in itself, as such methods take them
+  bool only_forces = false;      ///< p^2/2m and forces are all of it: methods for y' = f serve it too
+  std::vector<SceneForce> own;   ///< those it has in itself, as such methods take them
   std::function<AnyHamiltonian<double>(ForceField<double>)> make;
   std::function<AnyHamiltonian<double>(ForceField<double>, ConstraintSet)> make_constrained;  ///< empty: it knows none
   std::function<AnyHamiltonian<Quad>(ForceField<Quad>)> make_wide;  ///< empty: it knows doubles only

@@ -271,8 +271,8 @@ std::vector<std::string> warnings_of(const Scene& scene) {
       has_charges(scene.particles)) {
     add("the particles have charges that no force uses");
   }
-  const auto field = std::find_if(forces.begin(), forces.end(),
-                                  [](const SceneForce& force) { return force.force.claims().gyrates; });
+  const auto field =
+      std::find_if(forces.begin(), forces.end(), [](const SceneForce& force) { return force.force.claims().gyrates; });
   if (field != forces.end() && !has_charges(scene.particles)) {
     add(fmt::format("no particle has a charge, so the field '{}' does nothing; give a body a charge", field->name));
   }

@@ -336,7 +336,8 @@ bool first_step_fails(const Scene& scene, const Candidate& who, const Mode& mode
   // Its coupling is a frequency: the mode must have that of the scene.
   const SceneSplitting& splitting = scene.hamiltonian.splitting;
   const bool plain = scene.system || (splitting.only_forces && splitting.own.empty());
-  if (std::abs(mode.scale() - 1) > 1e-12 || mode.rate > 0 || !plain || !scene.integrator.decorators.empty()) return false;
+  if (std::abs(mode.scale() - 1) > 1e-12 || mode.rate > 0 || !plain || !scene.integrator.decorators.empty())
+    return false;
   const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
   if (!made.integrator.classical || !remembers(*made.integrator.classical->info)) return false;
   return !classical_step(*made.integrator.classical, mode)(z).allFinite();

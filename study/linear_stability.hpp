@@ -48,8 +48,8 @@ struct LinearTheory {
 /// @source HairerLubichWanner2006, MandziukSchlick1995
 LinearTheory linear_theory(const Scene& scene, const Candidate& who, const Mode& mode);
 
-/// Whether a method with a memory of its own, of which there is no matrix, finds no first step on a mode, at h omega = z:
-/// the copies of Tao's method come apart at once.
+/// Whether a method with a memory of its own, of which there is no matrix, finds no first step on a mode, at h omega =
+/// z: the copies of Tao's method come apart at once.
 bool first_step_fails(const Scene& scene, const Candidate& who, const Mode& mode, double z);
 
 }  // namespace noether

@@ -72,7 +72,8 @@ int main() {
   };
   const std::vector<Way> ways = {
       {"boris", turning({.rotation = Rotation::boris}, schemes::verlet_aba)},
-      {"hyper_boris", turning({.rotation = Rotation::hyper_boris, .cycles = 2, .gyrophase_order = 6}, schemes::verlet_aba)},
+      {"hyper_boris",
+       turning({.rotation = Rotation::hyper_boris, .cycles = 2, .gyrophase_order = 6}, schemes::verlet_aba)},
       {"helix", turning({}, schemes::verlet_aba)},
       {"boris, order 4", turning({.rotation = Rotation::boris}, schemes::yoshida_4)},
       {"helix, order 4", turning({}, schemes::blanes_moan_s6)},

@@ -33,7 +33,8 @@ ParticleSystem<double> proton() {
 }  // namespace
 
 int main() {
-  Simulation sim(proton(), compose(ChargedParticles(dipole, {.relativistic = Relativistic::higuera_cary}), schemes::verlet_aba),
+  Simulation sim(proton(),
+                 compose(ChargedParticles(dipole, {.relativistic = Relativistic::higuera_cary}), schemes::verlet_aba),
                  2e-3);
   MagneticMoment moment;
   moment.watch({.forces = {AnyForce<double>(InField(dipole))}, .c = light});

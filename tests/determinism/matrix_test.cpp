@@ -258,7 +258,8 @@ std::vector<Twin> charged_twins() {
   for (Index i = 0; i < 300; ++i) {
     const double k = static_cast<double>(i);
     s.add(fmt::format("charge {}", i), 1 + 0.1 * static_cast<double>(i % 7),
-          {1.05 + 0.001 * k, 0.1 * std::sin(k), 0.05 * std::cos(k)}, {0.01 * std::cos(k), 0.02, 0.01 * std::sin(3 * k)});
+          {1.05 + 0.001 * k, 0.1 * std::sin(k), 0.05 * std::cos(k)},
+          {0.01 * std::cos(k), 0.02, 0.01 * std::sin(3 * k)});
     s.column<Charge>()[i] = i % 3 == 0 ? -1 : 1;
   }
   std::vector<Twin> twins;
@@ -267,15 +268,16 @@ std::vector<Twin> charged_twins() {
     ForceField<double> both;
     both.add(InField(Tokamak{.B0 = 1, .R0 = 1, .safety = 2}));
     both.add(InField(UniformElectromagnetic{.E = {0.01, 0, 0.02}, .B = {0, 0, 0.1}}));
-    twins.push_back({.name = "charges, " + name,
-                     .bodies = s,
-                     .program = compose(ChargedParticles<ForceField<double>>(both, options), scheme),
-                     .step = 0.1,
-                     .hamiltonian = "[hamiltonian]\ntype='charged_particles'\n" + keys +
-                                    "[[hamiltonian.field]]\ntype='tokamak'\nB0=1\nR0=1\nsafety=2\n"
-                                    "[[hamiltonian.field]]\ntype='uniform_electromagnetic'\nE=[0.01,0,0.02]\nB=[0,0,0.1]\n",
-                     .method = std::string(scheme.name),
-                     .place = "[[particles.body]]\nname='replaced too'\nmass=1\ncharge=1\nx=[1,0,0]\nv=[0,0,0]\n"});
+    twins.push_back(
+        {.name = "charges, " + name,
+         .bodies = s,
+         .program = compose(ChargedParticles<ForceField<double>>(both, options), scheme),
+         .step = 0.1,
+         .hamiltonian = "[hamiltonian]\ntype='charged_particles'\n" + keys +
+                        "[[hamiltonian.field]]\ntype='tokamak'\nB0=1\nR0=1\nsafety=2\n"
+                        "[[hamiltonian.field]]\ntype='uniform_electromagnetic'\nE=[0.01,0,0.02]\nB=[0,0,0.1]\n",
+         .method = std::string(scheme.name),
+         .place = "[[particles.body]]\nname='replaced too'\nmass=1\ncharge=1\nx=[1,0,0]\nv=[0,0,0]\n"});
   };
   ForceField<double> forces;
   forces.add(InField(Tokamak{.B0 = 1, .R0 = 1, .safety = 2}));
@@ -313,10 +315,11 @@ std::vector<Twin> exact_energy_twins() {
 }
 
 void check_all_twins(std::size_t stride) {
-  for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), projected_twins(),
-                            turning_twins(), rigid_twins(), two_word_twins(), charged_twins(), exact_energy_twins(), corrected_twins(),
-                            wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
-                            wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
+  for (const auto& twins :
+       {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), projected_twins(), turning_twins(),
+        rigid_twins(), two_word_twins(), charged_twins(), exact_energy_twins(), corrected_twins(),
+        wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
+        wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);
   }
 }

@@ -11,7 +11,9 @@ namespace {
 
 using Four = Dual<double, 4>;  // derivatives by t, x, y, z
 
-struct Residuals { double divergence, rotation, electric, induction; };
+struct Residuals {
+  double divergence, rotation, electric, induction;
+};
 
 /// How far a field is from div B = 0, B = rot A, E = - grad phi - dA/dt and rot E = - dB/dt, relative to its size.
 template <class Field> Residuals residuals(const Field& field, double t, const Vec3<double>& x) {
@@ -69,7 +71,8 @@ TEST_CASE("a wave and a gap obey the law of induction", "[forces][fields]") {
   for (const Vec3<double>& x : about) CHECK(residuals(wave, 0.7, x).induction < 1e-12);
   // To first order in the distance from the axis: a tenth of it, a hundredth of the error.
   const RadioFrequencyGap gap{.E0 = 2, .length = 0.5, .omega = 3, .c = 2, .phase = 0.2};
-  const double near = residuals(gap, 0.7, {1e-3, 0, 0.2}).induction, far = residuals(gap, 0.7, {1e-2, 0, 0.2}).induction;
+  const double near = residuals(gap, 0.7, {1e-3, 0, 0.2}).induction,
+               far = residuals(gap, 0.7, {1e-2, 0, 0.2}).induction;
   CHECK(far / near == Approx(10).epsilon(0.05));
   CHECK(near < 0.01);
   CHECK(residuals(gap, 0.7, {1e-3, 2e-3, 0.2}).divergence < 1e-12);

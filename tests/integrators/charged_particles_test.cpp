@@ -67,14 +67,14 @@ TEST_CASE("Penning trap: the closed form, and Boris's errors", "[integrators][ch
 
 TEST_CASE("uniform fields: Boris's steps as they are, the exact helix at any step", "[integrators][charges]") {
   const UniformElectromagnetic crossed{.E = {0.05, 0, 0}, .B = {0, 0, 1}};
-  const ParticleSystem<double> s = after(
-      one_charge({0, 0, 0}, {0.2, 0.1, 0.3}),
-      compose(in_field(crossed, {.rotation = Rotation::boris}), schemes::verlet_aba), 0.3, 1000);
+  const ParticleSystem<double> s =
+      after(one_charge({0, 0, 0}, {0.2, 0.1, 0.3}),
+            compose(in_field(crossed, {.rotation = Rotation::boris}), schemes::verlet_aba), 0.3, 1000);
   CHECK(apart(s, {0.39185970817676212465, -15.263276232193861418, 90}) < 1e-12);
   CHECK(std::abs(s.velocities()[0][1] + 0.2918597081767621246) < 1e-13);
   // The velocity of the exact helix after one turn of h omega = 2 pi is the one it had.
-  const ParticleSystem<double> turned = after(one_charge({0, 0, 0}, {0.2, 0.1, 0.3}),
-                                              compose(in_field(crossed), schemes::verlet_aba), 2 * pi, 100);
+  const ParticleSystem<double> turned =
+      after(one_charge({0, 0, 0}, {0.2, 0.1, 0.3}), compose(in_field(crossed), schemes::verlet_aba), 2 * pi, 100);
   CHECK((Vec3<double>(turned.velocities()[0]) - Vec3<double>(0.2, 0.1, 0.3)).norm() < 1e-13);
 }
 
@@ -92,7 +92,8 @@ TEST_CASE("orders of schemes over the exact helix and over Boris's steps", "[int
   // HeEtAl2015's field; errors of x and y at t = 20.
   const Vec3<double> exact(-0.04766154128255657713, -1.196145211610466656979645, 0);
   const auto error = [&](const std::string& scheme, ChargedParticlesOptions options, double h) {
-    const ParticleSystem<double> s = after(one_charge(ring_x, ring_v), ring_by(scheme, options), h, std::llround(20 / h));
+    const ParticleSystem<double> s =
+        after(one_charge(ring_x, ring_v), ring_by(scheme, options), h, std::llround(20 / h));
     return std::hypot(s.positions()[0][0] - exact[0], s.positions()[0][1] - exact[1]);
   };
   struct Row {
@@ -161,7 +162,8 @@ TEST_CASE("energies in a ring field are bounded for 20 000 steps by Boris, and n
   CHECK(rk4[1] == Approx(0.157).epsilon(0.02));
 }
 
-TEST_CASE("a tokamak banana: energy to rounding, canonical momentum bounded, where it turns", "[integrators][charges]") {
+TEST_CASE("a tokamak banana: energy to rounding, canonical momentum bounded, where it turns",
+          "[integrators][charges]") {
   // 3000 steps of pi/10: mu swings at the particle, and ten times less at the gyrocentre.
   const ChargeMotion motion{.forces = {AnyForce<double>(InField(Tokamak{}))}, .c = {}};
   CanonicalMomentum around;
@@ -276,9 +278,9 @@ TEST_CASE("relativistic motion in a constant electric field is a hyperbola", "[i
   const UniformElectromagnetic field{.E = {1, 0, 0}};
   for (const Relativistic how : {Relativistic::boris, Relativistic::vay, Relativistic::higuera_cary}) {
     const auto error = [&](double h) {
-      const ParticleSystem<double> s =
-          after(one_charge({0, 0, 0}, {0, 0, 0}),
-                compose(in_field(field, {.relativistic = how, .c = 1.0}), schemes::verlet_aba), h, std::llround(10 / h));
+      const ParticleSystem<double> s = after(
+          one_charge({0, 0, 0}, {0, 0, 0}),
+          compose(in_field(field, {.relativistic = how, .c = 1.0}), schemes::verlet_aba), h, std::llround(10 / h));
       return std::abs(s.positions()[0][0] - (std::sqrt(101.0) - 1));
     };
     CHECK(std::log2(error(0.1) / error(0.05)) == Approx(2).margin(0.05));

@@ -18,7 +18,8 @@ using V = Vec3<double>;
 enum class Push { boris, vay, higuera_cary };
 
 template <class Real>
-Vec3<Real> push(Push by, const Vec3<Real>& u, const Vec3<Real>& a, const Vec3<Real>& rate, const Real& c, const Real& h) {
+Vec3<Real> push(Push by, const Vec3<Real>& u, const Vec3<Real>& a, const Vec3<Real>& rate, const Real& c,
+                const Real& h) {
   if (by == Push::boris) return u + boris_push(u, a, rate, c, h);
   if (by == Push::vay) return u + vay_push(u, a, rate, c, h);
   return u + higuera_cary_push(u, a, rate, c, h);
@@ -51,23 +52,22 @@ TEST_CASE("relativistic pushers: one step, and whether they keep the volume", "[
     std::array<V, 3> after;  // boris, vay, higuera_cary
     double vay_volume;
   };
-  const std::vector<Case> cases = {
-      {{1, 2, 3},
-       {0.1, -0.2, 0.3},
-       {0.5, 0.7, -0.4},
-       1,
-       {V(0.34037254480314289739, 2.25660170296262610928, 3.14951866118852431298),
-        V(0.33872292041588976185, 2.25819775446506043026, 3.15024972083371795528),
-        V(0.33535899053803670094, 2.25926234534997347965, 3.14790784253499946556)},
-       4.49569e-4},
-      {{-12, 0.5, 4},
-       {0.9, 0.1, -0.3},
-       {-0.2, 2.5, 1.1},
-       0.7,
-       {V(-11.747706019807446863, 1.27453031718993174120, 2.12012091187607388573),
-        V(-11.743742589827522587, 1.27488310703234939329, 2.12003974041238363572),
-        V(-11.748372954255729632, 1.27657058188386452218, 2.11536268585381160739)},
-       -6.35251e-5}};
+  const std::vector<Case> cases = {{{1, 2, 3},
+                                    {0.1, -0.2, 0.3},
+                                    {0.5, 0.7, -0.4},
+                                    1,
+                                    {V(0.34037254480314289739, 2.25660170296262610928, 3.14951866118852431298),
+                                     V(0.33872292041588976185, 2.25819775446506043026, 3.15024972083371795528),
+                                     V(0.33535899053803670094, 2.25926234534997347965, 3.14790784253499946556)},
+                                    4.49569e-4},
+                                   {{-12, 0.5, 4},
+                                    {0.9, 0.1, -0.3},
+                                    {-0.2, 2.5, 1.1},
+                                    0.7,
+                                    {V(-11.747706019807446863, 1.27453031718993174120, 2.12012091187607388573),
+                                     V(-11.743742589827522587, 1.27488310703234939329, 2.12003974041238363572),
+                                     V(-11.748372954255729632, 1.27657058188386452218, 2.11536268585381160739)},
+                                    -6.35251e-5}};
   for (const Case& one : cases) {
     const V a = one.strength * one.E, rate = one.strength * one.B;
     for (const Push by : {Push::boris, Push::vay, Push::higuera_cary}) {
@@ -179,7 +179,8 @@ TEST_CASE("the exact helix: any angle, none, and no field", "[integrators][charg
     const Vec3<Quad> half = v + turned<Quad>(v, E, wide, turn, Quad(0.75));
     const Vec3<Quad> whole = v + turned<Quad>(v, E, wide, turn, Quad(1.5));
     CHECK(static_cast<double>((half + turned<Quad>(half, E, wide, turn, Quad(0.75)) - whole).norm()) < 1e-26);
-    const V narrow = V(0.3, -0.4, 0.5) + turned<double>(V(0.3, -0.4, 0.5), V(0.1, -0.2, 0.3), rate, Turn<double>(), 1.5);
+    const V narrow =
+        V(0.3, -0.4, 0.5) + turned<double>(V(0.3, -0.4, 0.5), V(0.1, -0.2, 0.3), rate, Turn<double>(), 1.5);
     for (int k = 0; k < 3; ++k) CHECK(std::abs(narrow[k] - static_cast<double>(whole[k])) < 1e-15 + 3e-16 * strength);
   }
 }

@@ -1,8 +1,8 @@
 /// Charges moved along one direction after the other: symplectic in x and m v + q A, and what the energy does.
 
+#include "integrators/k_symplectic.hpp"
 #include "engine/simulation.hpp"
 #include "integrators/all_schemes.hpp"
-#include "integrators/k_symplectic.hpp"
 #include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/charges.hpp"
@@ -67,9 +67,9 @@ template <class Field> double defect(const AnyIntegrator<Quad>& by, const Field&
 
 TEST_CASE("its steps are symplectic in x and m v + q A, and those that turn are not", "[integrators][charges]") {
   const auto lines = [](const auto& field, std::int64_t nodes) {
-    return AnyIntegrator<Quad>(compose(
-        AnyHamiltonian<Quad>(KSymplectic<ForceField<Quad>, Quad>(forces_of<Quad>(field), {.nodes = nodes})),
-        schemes::yoshida_4));
+    return AnyIntegrator<Quad>(
+        compose(AnyHamiltonian<Quad>(KSymplectic<ForceField<Quad>, Quad>(forces_of<Quad>(field), {.nodes = nodes})),
+                schemes::yoshida_4));
   };
   CHECK(defect(lines(Tokamak{}, 8), Tokamak{}, 0.2) < 1e-14);
   CHECK(defect(lines(test::RingField{}, 8), test::RingField{}, 0.2) < 1e-14);
@@ -94,7 +94,8 @@ TEST_CASE("energies in a ring field, first and last tenth of 20 000 steps", "[in
     }
     return tenths;
   };
-  // In a plane Z does nothing; independent figures (docs/theory/fields.md), whose last tenth is that of 20 000 steps too.
+  // In a plane Z does nothing; independent figures (docs/theory/fields.md), whose last tenth is that of 20 000 steps
+  // too.
   const auto second = worst(schemes::verlet), fourth = worst(schemes::yoshida_4);
   CHECK(second[0] == Approx(0.012553).epsilon(0.02));
   CHECK(second[1] == Approx(0.012617).epsilon(0.02));
