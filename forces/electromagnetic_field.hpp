@@ -86,6 +86,13 @@ template <class F> struct InField : F {
     }
   }
 
+  /// Of a field that is known in a part of space only: it says so by `bool covers(x) const`.
+  template <class Real> static Failure beyond(const ParticleSystem<Real>& s, Index i) {
+    return {.particle = i,
+            .quantity = "position",
+            .message = "'" + s.name(i) + "' has left the places where the field is known"};
+  }
+
   template <class Real>
     requires ElectromagneticField<F, Real>
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
@@ -102,7 +109,11 @@ template <class F> struct InField : F {
       const Real& m = s.masses()[i];
       if (all(q == Real(0)) || all(m == Real(0))) continue;
       FieldValues<Real> here;
-      this->at(t, s.positions()[i], here);
+      const Vec3<Real> x = s.positions()[i];
+      if constexpr (requires { this->covers(x); }) {
+        if (!this->covers(x)) out.fail(beyond(s, i));
+      }
+      this->at(t, x, here);
       out.force(i, Vec3<Real>(q * here.E));
       out.gyration(i, Vec3<Real>(q / m * here.B));
       if (out.wants_energy()) out.energy(q * here.phi);

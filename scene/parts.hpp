@@ -270,8 +270,8 @@ class Parts {
   ///
   /// One that acts on some particles only has `static constexpr std::size_t particles`, how many each of its terms
   /// ties, and a member `Tied<particles> tied` (engine/tied.hpp): scenes then say which, as for constraints.
-  /// One that is a letter of its own (drag) has `with_letter(part, H)`, and `as_force(part)` for methods that do not
-  /// split.
+  /// One that reads files has `void read_files(F&, TableReader&)`, found by its argument. One that is a letter of its
+  /// own (drag) has `with_letter(part, H)`, and `as_force(part)` for methods that do not split.
   template <class F> Parts& add_force() {
     static_assert(Described<F>, "a force in a scene describes itself: static constexpr auto describe()");
     std::size_t particles = 0;
@@ -430,6 +430,7 @@ class Parts {
   template <class F> static SceneForce read_force(TableReader& reader, const TiedParticles& tied) {
     F force{};
     read_part(reader, force);
+    if constexpr (requires { read_files(force, reader); }) read_files(force, reader);
     if constexpr (requires { force.tied; }) {
       for (const std::vector<Index>& particles : tied) {
         std::copy(particles.begin(), particles.end(), force.tied.emplace_back().begin());
