@@ -64,6 +64,7 @@
 #include "monitors/turning.hpp"
 #include "monitors/variables.hpp"
 #include "scene/constrained.hpp"
+#include "scene/grid_files.hpp"
 #include "scene/structure_parts.hpp"
 
 #include <algorithm>
@@ -144,6 +145,7 @@ void add_fields(Parts& parts) {
   parts.add_field<PenningTrap>();
   parts.add_field<PlaneWave>();
   parts.add_field<RadioFrequencyGap>();
+  parts.add_field<GridField>();
 }
 
 void add_systems(Parts& parts) {

@@ -40,7 +40,7 @@ int main() {
   moment.watch({.forces = {AnyForce<double>(InField(dipole))}, .c = light});
   auto& energy = sim.every(10, Energy{});
   auto& mu = sim.every(5, moment);
-  sim.every(50, io::TrajectoryWriter{"run.h5"});
+  sim.every(5, io::TrajectoryWriter{"run.h5"});
   const Outcome outcome = sim.run(30'000);
   fmt::print("{}\nenergy within {:.0e}\n{}\n", outcome, energy.worst(), io::digest(sim.particles()));
   if (!outcome.ok()) return exit_code(outcome);

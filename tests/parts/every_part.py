@@ -130,7 +130,7 @@ class Walk:
         case = self.case
         self.program = Program(program, folder)
         for file, text in case.files.items():
-            (folder / file).write_text(text)
+            (folder / file).write_bytes(text if isinstance(text, bytes) else text.encode())
         self.scene = scene_text(case, (3, 10, 50))
         for file, text in [("scene.toml", self.scene), ("other.toml", scene_text(case, (7, 4, 23))),
                            ("flow.toml", scene_text(case, (3, 10, 15), case.flow, FLOW_STEPS)),

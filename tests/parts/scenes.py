@@ -5,6 +5,7 @@ tables; units are reduced and times bare numbers in all of them but those of wat
 """
 
 import dataclasses
+import pathlib
 
 STEPS = 60
 
@@ -205,6 +206,9 @@ HAMILTONIANS = {
     "k_symplectic": Case(CHARGES, fields(SOLENOID, kind="k_symplectic"), rivals=WHOLE_STEPS),
 }
 
+# A of the field of a weak dipole below the charges, on 10 x 10 x 10 places 0.6 apart.
+GRID_FILE = (pathlib.Path(__file__).parent / "grid.h5").read_bytes()
+
 FIELDS = {
     "uniform_electromagnetic": Case(CHARGES, fields(SOLENOID)),
     "magnetic_gradient": Case(CHARGES, fields("type = 'magnetic_gradient'; B0 = 1; gradient = 0.1")),
@@ -213,6 +217,7 @@ FIELDS = {
     "tokamak": Case(CHARGES, fields("type = 'tokamak'; B0 = 1; R0 = 1; safety = 2")),
     "penning_trap": Case(CHARGES, fields("type = 'penning_trap'; B0 = 5; gradient = 2")),
     "plane_wave": Case(CHARGES, fields("type = 'plane_wave'; E0 = [0.3, 0.1, 0.0]; omega = 3; c = 2")),
+    "field_grid": Case(CHARGES, fields("type = 'field_grid'; file = 'grid.h5'"), files={"grid.h5": GRID_FILE}),
     "radio_frequency_gap": Case(CHARGES, fields(
         "type = 'radio_frequency_gap'; E0 = 0.5; length = 0.4; omega = 3; c = 5")),
 }

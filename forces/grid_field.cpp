@@ -1,0 +1,192 @@
+#include "forces/grid_field.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace noether {
+
+namespace {
+
+constexpr std::size_t reach = 6;  // places along an axis that a value between two of them takes
+
+/// Weights of six places for a value and its slope, at the part u in [0, 1] of the way from the third to the fourth.
+struct Weights {
+  std::array<double, reach> value{}, slope{};
+};
+
+Weights weights_at(double u) {
+  // Hermite's cubic of two values and two slopes, and these as differences of fourth order.
+  constexpr std::array<double, 5> difference = {1.0 / 12, -8.0 / 12, 0, 8.0 / 12, -1.0 / 12};
+  const double v = 1 - u;
+  const std::array<double, 4> h = {v * v * (1 + 2 * u), u * u * (1 + 2 * v), u * v * v, -u * u * v};
+  const std::array<double, 4> d = {-6 * u * v, 6 * u * v, v * (v - 2 * u), u * (u - 2 * v)};
+  Weights w;
+  w.value[2] = h[0];
+  w.value[3] = h[1];
+  w.slope[2] = d[0];
+  w.slope[3] = d[1];
+  for (std::size_t k = 0; k < difference.size(); ++k) {
+    w.value[k] += h[2] * difference[k];
+    w.slope[k] += d[2] * difference[k];
+    w.value[k + 1] += h[3] * difference[k];
+    w.slope[k + 1] += d[3] * difference[k];
+  }
+  return w;
+}
+
+/// A value and its slopes along x, y and z.
+struct Sloped {
+  double value = 0;
+  std::array<double, 3> slope{};
+};
+
+/// Where a place lies: the first of its six along each axis, and their weights.
+struct Cell {
+  std::array<Index, 3> first{};
+  std::array<Weights, 3> weights;
+};
+
+/// Component `c` of `width` in values on a grid.
+Sloped between(const FieldGrid& grid, const std::vector<double>& values, std::size_t width, std::size_t c,
+               const Cell& cell) {
+  const auto ny = static_cast<std::size_t>(grid.counts[1]), nz = static_cast<std::size_t>(grid.counts[2]);
+  const auto i0 = static_cast<std::size_t>(cell.first[0]), j0 = static_cast<std::size_t>(cell.first[1]),
+             k0 = static_cast<std::size_t>(cell.first[2]);
+  const auto& [wx, wy, wz] = cell.weights;
+  Sloped all;
+  for (std::size_t i = 0; i < reach; ++i) {
+    double plane = 0, by_y = 0, by_z = 0;
+    for (std::size_t j = 0; j < reach; ++j) {
+      double row = 0, along = 0;
+      for (std::size_t k = 0; k < reach; ++k) {
+        const double here = values[(((i0 + i) * ny + j0 + j) * nz + k0 + k) * width + c];
+        row += wz.value[k] * here;
+        along += wz.slope[k] * here;
+      }
+      plane += wy.value[j] * row;
+      by_y += wy.slope[j] * row;
+      by_z += wy.value[j] * along;
+    }
+    all.value += wx.value[i] * plane;
+    all.slope[0] += wx.slope[i] * plane;
+    all.slope[1] += wx.value[i] * by_y;
+    all.slope[2] += wx.value[i] * by_z;
+  }
+  for (std::size_t k = 0; k < 3; ++k) all.slope[k] /= grid.spacing[k];
+  return all;
+}
+
+/// The cell that x lies in, or the nearest that is known.
+Cell cell_at(const FieldGrid& grid, const Vec3<double>& x) {
+  Cell cell;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double place = (x[static_cast<Index>(k)] - grid.origin[k]) / grid.spacing[k];
+    const auto last = static_cast<double>(grid.counts[k] - 4);
+    const double low = std::clamp(std::floor(place), 2.0, last);
+    cell.first[k] = static_cast<Index>(low) - 2;
+    cell.weights[k] = weights_at(place - low);
+  }
+  return cell;
+}
+
+std::uint64_t hash_of(std::uint64_t hash, const void* bytes, std::size_t size) {
+  const auto* at = static_cast<const unsigned char*>(bytes);
+  for (std::size_t k = 0; k < size; ++k) hash = (hash ^ at[k]) * 1099511628211ULL;
+  return hash;
+}
+
+}  // namespace
+
+void FieldGrid::check() const {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (counts[k] < 6) {
+      throw Error(fmt::format("a grid of {} x {} x {} places is too small; six or more along each axis are expected",
+                              counts[0], counts[1], counts[2]));
+    }
+    if (!(spacing[k] > 0)) throw Error(fmt::format("a spacing of {} is not a length above 0", spacing[k]));
+  }
+  const auto places = static_cast<std::size_t>(counts[0] * counts[1] * counts[2]);
+  if (A.empty() == B.empty()) throw Error("a grid has either A or B; give one of the two");
+  const std::vector<double>& vectors = A.empty() ? B : A;
+  if (vectors.size() != 3 * places || (!phi.empty() && phi.size() != places)) {
+    throw Error(fmt::format("a grid of {} x {} x {} places has {} numbers of {} and {} of phi", counts[0], counts[1],
+                            counts[2], vectors.size(), A.empty() ? "B" : "A", phi.size()));
+  }
+  for (const std::vector<double>* list : {&A, &B, &phi}) {
+    if (!std::all_of(list->begin(), list->end(), [](double value) { return std::isfinite(value); })) {
+      throw Error("a value of the grid is not finite");
+    }
+  }
+}
+
+std::string GridField::signature() const {
+  std::uint64_t hash = 14695981039346656037ULL;
+  if (grid != nullptr) {
+    hash = hash_of(hash, grid->counts.data(), sizeof(grid->counts));
+    hash = hash_of(hash, grid->origin.data(), sizeof(grid->origin));
+    hash = hash_of(hash, grid->spacing.data(), sizeof(grid->spacing));
+    for (const std::vector<double>* list : {&grid->A, &grid->B, &grid->phi}) {
+      hash = hash_of(hash, list->data(), list->size() * sizeof(double));
+    }
+  }
+  return fmt::format("field_grid(values {:016x})", hash);
+}
+
+bool GridField::covers(const Vec3<double>& x) const {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double place = (x[static_cast<Index>(k)] - grid->origin[k]) / grid->spacing[k];
+    if (!(place >= 2 && place <= static_cast<double>(grid->counts[k] - 3))) return false;
+  }
+  return true;
+}
+
+double GridField::divergence() const {
+  if (grid->B.empty()) return 0;
+  double largest = 0, strongest = 0;
+  for (Index i = 2; i + 3 < grid->counts[0]; ++i) {
+    for (Index j = 2; j + 3 < grid->counts[1]; ++j) {
+      for (Index k = 2; k + 3 < grid->counts[2]; ++k) {
+        const std::array<Index, 3> low = {i, j, k};
+        Vec3<double> x;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          x[static_cast<Index>(axis)] =
+              grid->origin[axis] + (static_cast<double>(low[axis]) + 0.5) * grid->spacing[axis];
+        }
+        const Cell cell = cell_at(*grid, x);
+        double divergence = 0, strength = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const Sloped B = between(*grid, grid->B, 3, c, cell);
+          divergence += B.slope[c] * grid->spacing[c];
+          strength += B.value * B.value;
+        }
+        largest = std::max(largest, std::abs(divergence));
+        strongest = std::max(strongest, std::sqrt(strength));
+      }
+    }
+  }
+  return strongest > 0 ? largest / strongest : 0;
+}
+
+void GridField::interpolate(const Vec3<double>& x, FieldValues<double>& field) const {
+  const Cell cell = cell_at(*grid, x);
+  if (!grid->A.empty()) {
+    std::array<Sloped, 3> A;
+    for (std::size_t c = 0; c < 3; ++c) A[c] = between(*grid, grid->A, 3, c, cell);
+    field.A = Vec3<double>(A[0].value, A[1].value, A[2].value);
+    field.B = Vec3<double>(A[2].slope[1] - A[1].slope[2], A[0].slope[2] - A[2].slope[0], A[1].slope[0] - A[0].slope[1]);
+  } else {
+    for (std::size_t c = 0; c < 3; ++c) field.B[static_cast<Index>(c)] = between(*grid, grid->B, 3, c, cell).value;
+  }
+  if (grid->phi.empty()) return;
+  const Sloped phi = between(*grid, grid->phi, 1, 0, cell);
+  field.phi = phi.value;
+  field.E = -Vec3<double>(phi.slope[0], phi.slope[1], phi.slope[2]);
+}
+
+template struct detail::ForceModel<InField<GridField>, double>;
+
+}  // namespace noether
