@@ -155,9 +155,10 @@ template <class F, class Real = double> class ChargedParticles {
 
  private:
   static constexpr std::uint8_t proper_velocities = 9;
-  static Turn<Real> turn_of(const ChargedParticlesOptions& options) {
-    if (options.rotation == Rotation::boris) return Turn<Real>(1, 2);
-    return options.rotation == Rotation::exact ? Turn<Real>() : Turn<Real>(options.cycles, options.gyrophase_order);
+  static GyrationAngle<Real> turn_of(const ChargedParticlesOptions& options) {
+    if (options.rotation == Rotation::boris) return GyrationAngle<Real>(1, 2);
+    return options.rotation == Rotation::exact ? GyrationAngle<Real>()
+                                               : GyrationAngle<Real>(options.cycles, options.gyrophase_order);
   }
   bool relativistic() const { return options_.relativistic != Relativistic::no; }
   void drift(ParticleSystem<Real>& s, const Real& h);
@@ -166,7 +167,7 @@ template <class F, class Real = double> class ChargedParticles {
 
   detail::FieldForces<F, Real> forces_;
   ChargedParticlesOptions options_;
-  Turn<Real> turn_;
+  GyrationAngle<Real> turn_;
   Real c_ = Real(0);  ///< speed of light, where it matters
   std::optional<Request> observing_;
 };

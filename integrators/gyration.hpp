@@ -23,13 +23,13 @@ template <class Real> struct TurnCoefficients { Real sine, versine; };
 /// One cycle of Boris's is a turn by 2 atan(x), x = h |Omega|/2; with tan x instead of x, to some order, its angle is
 /// right to that order. n cycles are n such turns of h/n, multiplied out without trigonometric functions.
 /// @source Boris1970, ZenitaniUmeda2018, ZenitaniKato2020
-template <class Real> class Turn {
+template <class Real> class GyrationAngle {
  public:
   /// The exact angle.
-  Turn() = default;
+  GyrationAngle() = default;
   /// @param cycles  1 or more
   /// @param order  even, 2 to 16: of the angle
-  Turn(std::int64_t cycles, std::int64_t order) : cycles_(cycles), terms_(order / 2) {
+  GyrationAngle(std::int64_t cycles, std::int64_t order) : cycles_(cycles), terms_(order / 2) {
     // tan' = 1 + tan^2, power by power
     tangent_[0] = Real(1);
     for (std::size_t k = 1; k < tangent_.size(); ++k) {
@@ -77,7 +77,7 @@ template <class Real> class Turn {
 /// By what v changes over h under v' = a + v x Omega, where it turns by the angle of `turn`; the drift a x
 /// Omega/Omega^2 is right for any angle.
 template <class Real>
-Vec3<Real> turned(const Vec3<Real>& v, const Vec3<Real>& a, const Vec3<Real>& rate, const Turn<Real>& turn,
+Vec3<Real> turned(const Vec3<Real>& v, const Vec3<Real>& a, const Vec3<Real>& rate, const GyrationAngle<Real>& turn,
                   const Real& h) {
   const Real rate2 = norm2(rate);
   const auto rests = rate2 == Real(0);

@@ -38,7 +38,7 @@ double determinant(Push by, const V& u, const V& a, const V& rate) {
   return J.determinant();
 }
 
-double angle_a_step(const Turn<double>& turn, double h) {
+double angle_a_step(const GyrationAngle<double>& turn, double h) {
   const V rate(0, 0, 1), v = V(1, 0, 0) + turned<double>(V(1, 0, 0), V(0, 0, 0), rate, turn, h);
   return std::atan2(-v[1], v[0]);
 }
@@ -136,17 +136,17 @@ TEST_CASE("the angle of a step of Boris's, corrected and in cycles", "[integrato
                          Row{2, 2, 0.09997917447568064355, 0.49741997818704574012, 1.85459043600322446485},
                          Row{4, 2, 0.09999479215489343316, 0.49935047996765878779, 1.95982930501491323337}}) {
     CAPTURE(row.cycles, row.order);
-    const Turn<double> turn(row.cycles, row.order);
+    const GyrationAngle<double> turn(row.cycles, row.order);
     CHECK(angle_a_step(turn, 0.1) == Approx(row.at_small).epsilon(2e-15));
     CHECK(angle_a_step(turn, 0.5) == Approx(row.at_half).epsilon(2e-15));
     CHECK(angle_a_step(turn, 2) == Approx(row.at_two).epsilon(2e-15));
   }
   // Slopes of the error of the angle, order by order.
   for (const std::int64_t order : {2, 4, 6, 8}) {
-    const Turn<Quad> turn(2, order);
+    const GyrationAngle<Quad> turn(2, order);
     const auto error = [&](double h) {
       const Vec3<Quad> rate(0, 0, 1), v = turned<Quad>({1, 0, 0}, {0, 0, 0}, rate, turn, Quad(h));
-      const TurnCoefficients<Quad> exact = Turn<Quad>().over(Quad(h), Quad(1));
+      const TurnCoefficients<Quad> exact = GyrationAngle<Quad>().over(Quad(h), Quad(1));
       return static_cast<double>(abs(-v[1] - exact.sine));
     };
     const double slope = std::log2(error(0.2) / error(0.1));
@@ -156,7 +156,9 @@ TEST_CASE("the angle of a step of Boris's, corrected and in cycles", "[integrato
 
 TEST_CASE("cycles in closed form are so many of Boris's steps", "[integrators][charges]") {
   const V v(0.3, -0.4, 0.5), E(0.1, -0.2, 0.3), B(0.5, 0.7, -0.4);
-  const auto after = [&](std::int64_t cycles) { return V(v + turned<double>(v, E, B, Turn<double>(cycles, 2), 1.5)); };
+  const auto after = [&](std::int64_t cycles) {
+    return V(v + turned<double>(v, E, B, GyrationAngle<double>(cycles, 2), 1.5));
+  };
   CHECK((after(1) - V(-0.2704356846473029045, -0.0747925311203319502, 1.14356846473029045643)).norm() < 1e-14);
   CHECK((after(3) - V(-0.3666633121385163572, -0.0056903484268799531, 1.14421275007981463530)).norm() < 1e-14);
   // Boris's own formula, cycle by cycle.
@@ -169,7 +171,7 @@ TEST_CASE("cycles in closed form are so many of Boris's steps", "[integrators][c
 }
 
 TEST_CASE("the exact helix: any angle, none, and no field", "[integrators][charges]") {
-  const Turn<Quad> turn;
+  const GyrationAngle<Quad> turn;
   const Vec3<Quad> v(Quad(3) / 10, Quad(-4) / 10, Quad(1) / 2), E(Quad(1) / 10, Quad(-2) / 10, Quad(3) / 10);
   for (const double strength : {0.0, 1e-200, 1e-9, 1.0, 1e3, 1e6}) {
     CAPTURE(strength);
@@ -180,7 +182,7 @@ TEST_CASE("the exact helix: any angle, none, and no field", "[integrators][charg
     const Vec3<Quad> whole = v + turned<Quad>(v, E, wide, turn, Quad(1.5));
     CHECK(static_cast<double>((half + turned<Quad>(half, E, wide, turn, Quad(0.75)) - whole).norm()) < 1e-26);
     const V narrow =
-        V(0.3, -0.4, 0.5) + turned<double>(V(0.3, -0.4, 0.5), V(0.1, -0.2, 0.3), rate, Turn<double>(), 1.5);
+        V(0.3, -0.4, 0.5) + turned<double>(V(0.3, -0.4, 0.5), V(0.1, -0.2, 0.3), rate, GyrationAngle<double>(), 1.5);
     for (int k = 0; k < 3; ++k) CHECK(std::abs(narrow[k] - static_cast<double>(whole[k])) < 1e-15 + 3e-16 * strength);
   }
 }
