@@ -144,7 +144,9 @@ TEST_CASE("a charge that leaves the grid ends the run by name", "[forces][grid_f
 }
 
 TEST_CASE("grids whose shapes do not fit are refused", "[forces][grid_field]") {
-  FieldGrid grid{.counts = {6, 6, 6}, .A = std::vector<double>(648, 0.0)};
+  FieldGrid grid;
+  grid.counts = {6, 6, 6};
+  grid.A.assign(648, 0.0);
   CHECK_NOTHROW(grid.check());
   grid.B = grid.A;
   CHECK_THROWS_WITH(grid.check(), Catch::Contains("either A or B"));
