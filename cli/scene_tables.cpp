@@ -210,6 +210,11 @@ SceneTable force() {
                    "the letter of its kicks, for multiple time steps with a word such as \"CBABABC\""}})};
 }
 
+SceneTable charge_field() {
+  return {"[[hamiltonian.field]]", "One field that acts on charges; as many tables as there are fields.",
+          fields({{"type", "text", "1", "", "a field", "\"tokamak\""}})};
+}
+
 SceneTable constraint() {
   return {"[[hamiltonian.constraint]]",
           "Constraints of one kind. All tables share one solver; `tolerance` belongs to `rattle` and `p_shake`, "
@@ -300,8 +305,8 @@ SceneTable named(std::string name, std::string help, std::vector<FieldInfo> keys
 }  // namespace
 
 std::vector<SceneTable> scene_tables(const Parts& parts) {
-  std::vector<SceneTable> all = {top(),  particles(), body(),        rigid_body(), site(),
-                                 type(), pair(),      hamiltonian(), force(),      constraint()};
+  std::vector<SceneTable> all = {top(),  particles(),   body(),  rigid_body(),   site(),      type(),
+                                 pair(), hamiltonian(), force(), charge_field(), constraint()};
   all.push_back(named("[hamiltonian.neighbors]", "How neighbors of pair forces are found; only `renewal` changes bits.",
                       and_of<NeighborOptions>({})));
   all.push_back(named("[hamiltonian.thermostat]", "Keeps the particles at a temperature, by friction and noise.",

@@ -90,7 +90,8 @@ struct ChargedParticlesOptions {
 /// the flow of a Hamiltonian. What is conserved nevertheless is bounded for long times where the field has symmetries
 /// (docs/theory/fields.md). Fields tell q B/m by `ForceSink::gyration`; other forces may not depend on velocities.
 ///
-/// Relativistic, the velocity column is the proper velocity u = gamma v while a run goes on, with its low word:
+/// Relativistic, the velocity column is the proper velocity u = gamma v while a run goes on; what is shown is v with
+/// its low word, without which gamma could not be told near the speed of light:
 ///
 ///     A:  x -> x + h u/gamma    B:  u' = F/m + q E/m + u x Omega/gamma by `relativistic`    H = sum m c^2 (gamma - 1)
 ///

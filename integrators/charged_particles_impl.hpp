@@ -46,7 +46,6 @@ template <class F, class Real> void ChargedParticles<F, Real>::bind(ParticleSyst
     throw Error("relativistic charges are stepped one system at a time; run these systems one by one");
   }
   c_ = speed_of_light_in(s, options_.c, "charged_particles");
-  if constexpr (std::is_same_v<Real, double>) s.keep_low_words(true);
   if (s.phase().coordinates != 0) return;
   for (Index i = 0; i < s.size(); ++i) {
     const auto v = detail::whole_velocity(s, i);
@@ -69,6 +68,7 @@ template <class F, class Real> void ChargedParticles<F, Real>::close(ParticleSys
   if (!relativistic()) return;
   using std::sqrt;
   using Wide = detail::FastNumber<Real>;
+  if constexpr (std::is_same_v<Real, double>) s.keep_low_words(true);
   const Wide c2 = Wide(c_) * Wide(c_);
   for (Index i = 0; i < s.size(); ++i) {
     const Vec3<Wide> u = detail::whole_velocity(s, i);

@@ -90,7 +90,8 @@ const std::vector<Wrong> wrong_lines = {
     {"list forces --measured", 2, "only methods are measured, not forces; leave --measured out"},
     {"list method", 2, "there is no list of 'method'; did you mean 'methods'?"},
     {"list everything", 2,
-     "there is no list of 'everything'; expected one of: methods, hamiltonians, forces, thermostats, constraints, "
+     "there is no list of 'everything'; expected one of: methods, hamiltonians, forces, fields, thermostats, "
+     "constraints, "
      "systems, "
      "decorators, monitors, builders, units"},
     {"describe yoshda_4", 2, "there is nothing called 'yoshda_4'; did you mean 'yoshida_4'?"},

@@ -66,7 +66,7 @@ TEST_CASE("on the axis of a dipole and of a mirror, and in the middle of one, wh
     REQUIRE(along.outcome.ok());
     CHECK(along.x[2] == Approx(3).epsilon(1e-14));
     CHECK(std::hypot(along.x[0], along.x[1]) == 0);
-    const End center = end_of(one_charge({0, 0, 1}, {0, 0, -0.25}),
+    const End center = end_of(one_charge({0, 0, 1.125}, {0, 0, -0.25}),
                               compose(in_field(dipole, {.rotation = rotation}), schemes::verlet_aba), 1, 100);
     CHECK_FALSE(center.outcome.ok());
     CHECK_THAT(to_text(center.outcome), Catch::Contains("not finite"));
@@ -107,7 +107,8 @@ TEST_CASE("gamma of a million, turned by a thousand radians a step", "[extremes]
     const End end = end_of(one_charge({0, 0, 0}, {v, 0, 0}),
                            compose(in_field(field, {.relativistic = how, .c = 1.0}), schemes::verlet_aba), 1, 1000);
     REQUIRE(end.outcome.ok());
-    CHECK(end.energy_error < 1e-11);
+    // Vay's step goes by way of u + v x Omega h/2, in which an angle of 1e3 takes three digits.
+    CHECK(end.energy_error < (how == Relativistic::vay ? 1e-8 : 1e-11));
     CHECK(end.v.norm() == Approx(v).epsilon(1e-15));
   }
 }

@@ -67,9 +67,9 @@ TEST_CASE("Penning trap: the closed form, and Boris's errors", "[integrators][ch
 
 TEST_CASE("uniform fields: Boris's steps as they are, the exact helix at any step", "[integrators][charges]") {
   const UniformElectromagnetic crossed{.E = {0.05, 0, 0}, .B = {0, 0, 1}};
-  const ParticleSystem<double> s =
-      after(one_charge({0, 0, 0}, {0.2, 0.1, 0.3}),
-            compose(in_field(crossed, {.rotation = Rotation::boris}), schemes::verlet_aba), 0.3, 1000);
+  const ParticleSystem<double> s = after(
+      one_charge({0, 0, 0}, {0.2, 0.1, 0.3}),
+      compose(in_field(crossed, {.rotation = Rotation::boris}), schemes::verlet_aba, {.compensated = true}), 0.3, 1000);
   CHECK(apart(s, {0.39185970817676212465, -15.263276232193861418, 90}) < 1e-12);
   CHECK(std::abs(s.velocities()[0][1] + 0.2918597081767621246) < 1e-13);
   // The velocity of the exact helix after one turn of h omega = 2 pi is the one it had.
@@ -89,12 +89,17 @@ TEST_CASE("the drift in a gradient", "[integrators][charges]") {
 }
 
 TEST_CASE("orders of schemes over the exact helix and over Boris's steps", "[integrators][charges]") {
-  // HeEtAl2015's field; errors of x and y at t = 20.
-  const Vec3<double> exact(-0.04766154128255657713, -1.196145211610466656979645, 0);
+  // HeEtAl2015's field; largest error of x, y and their velocities at t = 20.
+  const Vec3<double> exact(-0.04766154128255657713, -1.196145211610466656979645, 0),
+      speed(-0.1157153160848213522, 0.00168682408841279561, 0);
   const auto error = [&](const std::string& scheme, ChargedParticlesOptions options, double h) {
     const ParticleSystem<double> s =
         after(one_charge(ring_x, ring_v), ring_by(scheme, options), h, std::llround(20 / h));
-    return std::hypot(s.positions()[0][0] - exact[0], s.positions()[0][1] - exact[1]);
+    double worst = 0;
+    for (int k = 0; k < 2; ++k) {
+      worst = std::max({worst, std::abs(s.positions()[0][k] - exact[k]), std::abs(s.velocities()[0][k] - speed[k])});
+    }
+    return worst;
   };
   struct Row {
     std::string scheme;
@@ -107,8 +112,11 @@ TEST_CASE("orders of schemes over the exact helix and over Boris's steps", "[int
                          Row{"srkn6b", {}, 0.5, 1.764e-6, 4}}) {
     CAPTURE(row.scheme);
     const double first = error(row.scheme, row.options, row.h), second = error(row.scheme, row.options, row.h / 2);
-    CHECK(first == Approx(row.error).epsilon(0.25));
+    CHECK(first == Approx(row.error).epsilon(0.03));
     CHECK(std::log2(first / second) == Approx(row.slope).margin(0.1));
+  }
+  for (const char* scheme : {"mclachlan_sb3a_m4", "mclachlan_sb3a_m5"}) {
+    CHECK(std::log2(error(scheme, {}, 0.25) / error(scheme, {}, 0.125)) == Approx(4).margin(0.1));
   }
   // A composition of whole Boris steps has order 4; the tables print it.
   const double first = error("yoshida_4", boris, 0.2), second = error("yoshida_4", boris, 0.1);
@@ -181,7 +189,7 @@ TEST_CASE("a tokamak banana: energy to rounding, canonical momentum bounded, whe
   REQUIRE(sim.run(3000).ok());
   CHECK(particle.swing() == Approx(4.45e-3).epsilon(0.05));
   CHECK(center.swing() == Approx(3.57e-4).epsilon(0.05));
-  CHECK(energy.worst() < 1e-14);
+  CHECK(energy.worst() < 3e-14);
   CHECK(p.worst() * *p.scale() < 1.6e-9);
   // To t = 100 against 40 digits.
   ForceField<double> forces;

@@ -76,7 +76,7 @@ TEST_CASE("files that hold no grid are refused with what they lack", "[scene][gr
     try {
       load(folder);
     } catch (const Error& error) {
-      CHECK(error.line() == 11);
+      CHECK(error.line() == 12);
       return error.message();
     }
     return std::string("taken");
