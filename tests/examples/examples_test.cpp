@@ -29,6 +29,7 @@ struct Example {
 };
 
 const std::vector<Example> all = {
+    {"accelerator", accelerator::program, Length::quick, Bits::of_this_machine},
     {"alkane_liquid", alkane_liquid::program, Length::slow, Bits::of_this_machine, 100},
     {"argon_crystal", argon_crystal::program, Length::quick, Bits::of_this_machine, 250},
     {"asteroid_binary", asteroid_binary::program, Length::slow, Bits::of_this_machine, 100},
@@ -58,6 +59,7 @@ const std::vector<Example> all = {
     {"pythagorean", pythagorean::program, Length::nightly, Bits::everywhere, 20'000},
     {"rigid_water", rigid_water::program, Length::quick, Bits::of_this_machine, 100},
     {"robertson", robertson::program, Length::quick, Bits::of_this_machine, 0},
+    {"schwarzschild", schwarzschild::program, Length::quick, Bits::of_this_machine},
     {"sleeping_top", sleeping_top::program, Length::quick, Bits::of_this_machine},
     {"solar_system", solar_system::program, Length::slow},
     {"spherical_pendulum", spherical_pendulum::program, Length::quick},
@@ -69,6 +71,7 @@ const std::vector<Example> all = {
     {"two_phase_slab", two_phase_slab::program, Length::slow, Bits::of_this_machine, 100},
     {"van_allen", van_allen::program, Length::quick, Bits::of_this_machine},
     {"water_box", water_box::program, Length::nightly, Bits::of_this_machine, 50},
+    {"weber_pair", weber_pair::program, Length::quick, Bits::of_this_machine},
 };
 
 /// Programs write trajectories: without HDF5 they cannot run.

@@ -42,6 +42,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/first_order_system.hpp"
+#include "integrators/hamiltonian_system.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/lie/body_motion.hpp"
@@ -49,6 +50,9 @@
 #include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
 #include "integrators/systems/heat_line.hpp"
+#include "integrators/systems/schwarzschild.hpp"
+#include "integrators/systems/weber.hpp"
+#include "integrators/variational/lagrangian_system.hpp"
 #include "integrators/velocity_rescaling.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/bodies.hpp"
@@ -123,6 +127,9 @@ namespace examples::robertson {
 }
 #define run(steps) run(examples::shortened.value_or(steps))
 #define run_until(end) run(sim.steps_in(end) - sim.step())
+namespace examples::accelerator {
+#include "examples/accelerator/main.cpp"
+}
 namespace examples::alkane_liquid {
 #include "examples/alkane_liquid/main.cpp"
 }
@@ -201,6 +208,9 @@ namespace examples::pythagorean {
 namespace examples::rigid_water {
 #include "examples/rigid_water/main.cpp"
 }
+namespace examples::schwarzschild {
+#include "examples/schwarzschild/main.cpp"
+}
 namespace examples::sleeping_top {
 #include "examples/sleeping_top/main.cpp"
 }
@@ -230,6 +240,9 @@ namespace examples::two_phase_slab {
 }
 namespace examples::van_allen {
 #include "examples/van_allen/main.cpp"
+}
+namespace examples::weber_pair {
+#include "examples/weber_pair/main.cpp"
 }
 namespace examples::water_box {
 #include "examples/water_box/main.cpp"
