@@ -5,6 +5,7 @@
 #include "engine/charge.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "numbers/parallel.hpp"
 
 #include <string>
 #include <type_traits>
@@ -104,10 +105,10 @@ template <class F> struct InField : F {
           {.quantity = "vector potential",
            .message = "the field '" + detail::name_of(static_cast<const F&>(*this)) + "' has no vector potential"});
     }
-    for (Index i = 0; i < s.size(); ++i) {
+    const auto act = [&](Index i) {
       const Real& q = charges[i];
       const Real& m = s.masses()[i];
-      if (all(q == Real(0)) || all(m == Real(0))) continue;
+      if (all(q == Real(0)) || all(m == Real(0))) return;
       FieldValues<Real> here;
       const Vec3<Real> x = s.positions()[i];
       if constexpr (requires { this->covers(x); }) {
@@ -118,7 +119,18 @@ template <class F> struct InField : F {
       out.gyration(i, Vec3<Real>(q / m * here.B));
       if (out.wants_energy()) out.energy(q * here.phi);
       if (momenta) out.field_momentum(i, Vec3<Real>(q * here.A));
+    };
+    // Rows of their own, by threads; sums over all charges, and a failure, by one of them.
+    constexpr bool anywhere = !requires(const Vec3<Real>& x) { this->covers(x); };
+    if constexpr (anywhere && std::is_same_v<Real, double>) {
+      if (!out.wants_energy() && !out.wants_virial()) {
+        for_blocks(s.size(), [&](Index begin, Index end) {
+          for (Index i = begin; i < end; ++i) act(i);
+        });
+        return;
+      }
     }
+    for (Index i = 0; i < s.size(); ++i) act(i);
   }
 };
 

@@ -113,10 +113,15 @@ Vec3<Real> ChargedParticles<F, Real>::pushed(const Vec3<Real>& u, Index i, const
 
 template <class F, class Real> void ChargedParticles<F, Real>::kick(ParticleSystem<Real>& s, const Real& h) {
   forces_.evaluate(s, false);
+  const bool compensated = s.low_words() != nullptr;
   for_blocks(s.size(), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
-      const Vec3<Real> v = std::as_const(s).velocities()[i];
-      s.shift(i, Vec3<Real>(Vec3<Real>::Zero()), pushed(v, i, h));
+      const Vec3<Real> v = std::as_const(s).velocities()[i], change = pushed(v, i, h);
+      if (compensated) {
+        s.shift(i, Vec3<Real>(Vec3<Real>::Zero()), change);
+      } else {
+        s.velocities().add(i, change);
+      }
     }
   });
   if (!observing_) forces_.count();
