@@ -43,7 +43,7 @@ TEST_CASE("angles of a step from 1e-8 to 1e9: speeds are kept", "[extremes][char
           compose(in_field(UniformElectromagnetic{.B = {0.6 * B, 0, 0.8 * B}}, options), schemes::verlet_aba), 1, 1000);
       REQUIRE(end.outcome.ok());
       CHECK(end.energy_error < 1e-12);
-      CHECK(dot(end.v, Vec3<double>(0.6, 0, 0.8)) == Approx(1.14).epsilon(1e-11));
+      CHECK(std::abs(dot(end.v, Vec3<double>(0.6, 0, 0.8)) / 1.14 - 1) <= 1e-11);
     }
   }
 }
@@ -64,7 +64,7 @@ TEST_CASE("on the axis of a dipole and of a mirror, and in the middle of one, wh
     const End along = end_of(one_charge({0, 0, 2}, {0, 0, 0.1}),
                              compose(in_field(dipole, {.rotation = rotation}), schemes::verlet_aba), 0.1, 100);
     REQUIRE(along.outcome.ok());
-    CHECK(along.x[2] == Approx(3).epsilon(1e-14));
+    CHECK(std::abs(along.x[2] / 3 - 1) <= 1e-14);
     CHECK(std::hypot(along.x[0], along.x[1]) == 0);
     const End center = end_of(one_charge({0, 0, 1.125}, {0, 0, -0.25}),
                               compose(in_field(dipole, {.rotation = rotation}), schemes::verlet_aba), 1, 100);
@@ -75,7 +75,7 @@ TEST_CASE("on the axis of a dipole and of a mirror, and in the middle of one, wh
   const End through =
       end_of(one_charge({0, 0, -4}, {0, 0, 1}), compose(in_field(mirror), schemes::verlet_aba), 0.01, 800);
   REQUIRE(through.outcome.ok());
-  CHECK(through.x[2] == Approx(4).epsilon(1e-12));
+  CHECK(std::abs(through.x[2] / 4 - 1) <= 1e-12);
   // Gauss's method takes derivatives there too.
   ForceField<double> forces;
   forces.add(InField(mirror));
@@ -109,7 +109,7 @@ TEST_CASE("gamma of a million, turned by a thousand radians a step", "[extremes]
     REQUIRE(end.outcome.ok());
     // Vay's step goes by way of u + v x Omega h/2, in which an angle of 1e3 takes three digits.
     CHECK(end.energy_error < (how == Relativistic::vay ? 1e-8 : 1e-11));
-    CHECK(end.v.norm() == Approx(v).epsilon(1e-15));
+    CHECK(std::abs(end.v.norm() / v - 1) <= 1e-15);
   }
 }
 

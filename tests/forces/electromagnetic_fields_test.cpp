@@ -73,7 +73,7 @@ TEST_CASE("a wave and a gap obey the law of induction", "[forces][fields]") {
   const RadioFrequencyGap gap{.E0 = 2, .length = 0.5, .omega = 3, .c = 2, .phase = 0.2};
   const double near = residuals(gap, 0.7, {1e-3, 0, 0.2}).induction,
                far = residuals(gap, 0.7, {1e-2, 0, 0.2}).induction;
-  CHECK(far / near == Approx(10).epsilon(0.05));
+  CHECK(std::abs(far / near / 10 - 1) <= 0.05);
   CHECK(near < 0.01);
   CHECK(residuals(gap, 0.7, {1e-3, 2e-3, 0.2}).divergence < 1e-12);
 }
@@ -83,7 +83,7 @@ TEST_CASE("a loop of current: its axis, its far field, the edge of its wire", "[
   const MagneticMirror loop{.B0 = 0.5, .radius = 0.8, .distance = 0};
   for (const double z : {0.0, 0.3, -2.0}) {
     const FieldValues<double> f = at(loop, {0, 0, z});
-    CHECK(f.B[2] == Approx(std::pow(0.8, 3) / std::pow(0.64 + z * z, 1.5)).epsilon(1e-14));
+    CHECK(std::abs(f.B[2] * std::pow(0.64 + z * z, 1.5) / std::pow(0.8, 3) - 1) <= 1e-14);
     CHECK(f.B[0] == 0);
   }
   // Far away a dipole of B0 a^3/2.
@@ -92,7 +92,7 @@ TEST_CASE("a loop of current: its axis, its far field, the edge of its wire", "[
   CHECK((at(loop, far).B - at(dipole, far).B).norm() < 3e-4 * at(dipole, far).B.norm());
   // Beside the wire that of a straight one: B = mu_0 I/2 pi d = B0 a/pi d.
   const double d = 1e-6;
-  CHECK(std::abs(at(loop, {0.8 + d, 0, 0}).B[2]) == Approx(0.8 / (std::acos(-1.0) * d)).epsilon(1e-4));
+  CHECK(std::abs(std::abs(at(loop, {0.8 + d, 0, 0}).B[2]) * std::acos(-1.0) * d / 0.8 - 1) <= 1e-4);
 }
 
 TEST_CASE("a tokamak's field is that of the literature", "[forces][fields]") {
@@ -102,7 +102,7 @@ TEST_CASE("a tokamak's field is that of the literature", "[forces][fields]") {
   const Vec3<double> expected(-(2 * x[1] + x[0] * x[2]) / (2 * R2), (2 * x[0] - x[1] * x[2]) / (2 * R2),
                               (R - 1) / (2 * R));
   CHECK((at(Tokamak{}, x).B - expected).norm() < 1e-15);
-  CHECK(at(MagneticDipole{.moment = {0, 0, 1000}}, {5, 0, 0}).B[2] == Approx(-8).epsilon(1e-15));
+  CHECK(std::abs(at(MagneticDipole{.moment = {0, 0, 1000}}, {5, 0, 0}).B[2] / -8 - 1) <= 1e-15);
 }
 
 TEST_CASE("a field is a force on charges: E and v x B, energies, and nothing on what has none", "[forces][fields]") {
@@ -117,7 +117,7 @@ TEST_CASE("a field is a force on charges: E and v x B, energies, and nothing on 
     ForceSink<double> sink(a, s, {.energy = true});
     field.add_to(sink, s);
     CHECK((Vec3<double>(a[0]) - Vec3<double>(-0.5 * (E + cross<double>(v, B)))).norm() < 1e-16);
-    CHECK(sink.potential() == Approx(2 * dot(E, Vec3<double>(1, 2, 3))).epsilon(1e-15));
+    CHECK(std::abs(sink.potential() / (2 * dot(E, Vec3<double>(1, 2, 3))) - 1) <= 1e-15);
   }
   ForceSink<double> sink(a, s, {});
   sink.set_gyrations(rate);

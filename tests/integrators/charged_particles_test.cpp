@@ -53,9 +53,9 @@ TEST_CASE("Penning trap: the closed form, and Boris's errors", "[integrators][ch
                  exact);
   };
   const ChargedParticlesOptions boris{.rotation = Rotation::boris};
-  CHECK(error("verlet_aba", boris, 1.0 / 160) == Approx(0.21112).margin(1e-4));
-  CHECK(error("verlet_aba", boris, 1.0 / 320) == Approx(0.052586).margin(1e-5));
-  CHECK(error("verlet_aba", boris, 1.0 / 640) == Approx(0.013133).margin(1e-5));
+  CHECK(std::abs(error("verlet_aba", boris, 1.0 / 160) - 0.21112) <= 1e-4);
+  CHECK(std::abs(error("verlet_aba", boris, 1.0 / 320) - 0.052586) <= 1e-5);
+  CHECK(std::abs(error("verlet_aba", boris, 1.0 / 640) - 0.013133) <= 1e-5);
   CHECK(error("kahan_li_8_s17", {}, 1.0 / 160) < 1e-11);
   // Methods for q'' = f(t, q, v) take fields as forces, as they are and by their Hamiltonian.
   ForceField<double> forces;
@@ -85,7 +85,7 @@ TEST_CASE("the drift in a gradient", "[integrators][charges]") {
                  period / 64);
   REQUIRE(sim.run(64).ok());
   CHECK(std::abs(sim.particles().positions()[0][0]) < 1e-12);
-  CHECK(std::abs(sim.particles().positions()[0][1]) == Approx(0.07891040588748642383).epsilon(1e-11));
+  CHECK(std::abs(std::abs(sim.particles().positions()[0][1]) / 0.07891040588748642383 - 1) <= 1e-11);
 }
 
 TEST_CASE("orders of schemes over the exact helix and over Boris's steps", "[integrators][charges]") {
@@ -112,15 +112,15 @@ TEST_CASE("orders of schemes over the exact helix and over Boris's steps", "[int
                          Row{"srkn6b", {}, 0.5, 1.764e-6, 4}}) {
     CAPTURE(row.scheme);
     const double first = error(row.scheme, row.options, row.h), second = error(row.scheme, row.options, row.h / 2);
-    CHECK(first == Approx(row.error).epsilon(0.03));
-    CHECK(std::log2(first / second) == Approx(row.slope).margin(0.1));
+    CHECK(std::abs(first / row.error - 1) <= 0.03);
+    CHECK(std::abs(std::log2(first / second) - row.slope) <= 0.1);
   }
   for (const char* scheme : {"mclachlan_sb3a_m4", "mclachlan_sb3a_m5"}) {
-    CHECK(std::log2(error(scheme, {}, 0.25) / error(scheme, {}, 0.125)) == Approx(4).margin(0.1));
+    CHECK(std::abs(std::log2(error(scheme, {}, 0.25) / error(scheme, {}, 0.125)) - 4) <= 0.1);
   }
   // A composition of whole Boris steps has order 4; the tables print it.
   const double first = error("yoshida_4", boris, 0.2), second = error("yoshida_4", boris, 0.1);
-  CHECK(std::log2(first / second) == Approx(4).margin(0.3));
+  CHECK(std::abs(std::log2(first / second) - 4) <= 0.3);
   CHECK(ring_by("yoshida_4", boris).claims().order == 4);
 }
 
@@ -161,13 +161,13 @@ TEST_CASE("energies in a ring field are bounded for 20 000 steps by Boris, and n
     return tenths;
   };
   const auto boris = worst(ring_by("verlet_aba", {.rotation = Rotation::boris}), h);
-  CHECK(boris[0] == Approx(2.3418e-4).epsilon(0.02));
-  CHECK(boris[1] == Approx(2.3418e-4).epsilon(0.02));
+  CHECK(std::abs(boris[0] / 2.3418e-4 - 1) <= 0.02);
+  CHECK(std::abs(boris[1] / 2.3418e-4 - 1) <= 0.02);
   ForceField<double> forces;
   forces.add(InField(test::RingField{}));
   const auto rk4 = worst(classical(forces, method("rk4")), h);
-  CHECK(rk4[0] == Approx(0.0197).epsilon(0.02));
-  CHECK(rk4[1] == Approx(0.157).epsilon(0.02));
+  CHECK(std::abs(rk4[0] / 0.0197 - 1) <= 0.02);
+  CHECK(std::abs(rk4[1] / 0.157 - 1) <= 0.02);
 }
 
 TEST_CASE("a tokamak banana: energy to rounding, canonical momentum bounded, where it turns",
@@ -187,8 +187,8 @@ TEST_CASE("a tokamak banana: energy to rounding, canonical momentum bounded, whe
   auto& particle = sim.every(1, at_particle);
   auto& energy = sim.every(10, Energy{});
   REQUIRE(sim.run(3000).ok());
-  CHECK(particle.swing() == Approx(4.45e-3).epsilon(0.05));
-  CHECK(center.swing() == Approx(3.57e-4).epsilon(0.05));
+  CHECK(std::abs(particle.swing() / 4.45e-3 - 1) <= 0.05);
+  CHECK(std::abs(center.swing() / 3.57e-4 - 1) <= 0.05);
   CHECK(energy.worst() < 3e-14);
   CHECK(p.worst() * *p.scale() < 1.6e-9);
   // To t = 100 against 40 digits.
@@ -222,10 +222,10 @@ TEST_CASE("1e5 gyrations of a banana", "[integrators][charges][nightly]") {
     if (k > 1'800'000) tenths[1] = std::max(tenths[1], error);
   }
   CHECK(energy.worst() < 5e-13);
-  CHECK(tenths[0] == Approx(1.4294e-9).epsilon(0.01));
-  CHECK(tenths[1] == Approx(1.4295e-9).epsilon(0.01));
-  CHECK(least == Approx(1.00739).margin(1e-5));
-  CHECK(most == Approx(1.08527).margin(1e-5));
+  CHECK(std::abs(tenths[0] / 1.4294e-9 - 1) <= 0.01);
+  CHECK(std::abs(tenths[1] / 1.4295e-9 - 1) <= 0.01);
+  CHECK(std::abs(least - 1.00739) <= 1e-5);
+  CHECK(std::abs(most - 1.08527) <= 1e-5);
 }
 
 TEST_CASE("a dipole holds a charge between its mirror points", "[integrators][charges]") {
@@ -262,7 +262,7 @@ TEST_CASE("relativistic charges: gyration, force-free fields, energies, digits a
       Simulation sim(one_charge({0, 0, 0}, {v, 0, 0}), by(how, along), 0.01 * own);
       auto& energy = sim.every(10, Energy{});
       REQUIRE(sim.run(1000).ok());
-      CHECK(*energy.report().first == Approx(own - 1).epsilon(1e-9));
+      CHECK(std::abs(*energy.report().first / (own - 1) - 1) <= 1e-9);
       CHECK(energy.worst() < 1e-13);
       CHECK(sim.claims().order == 2);
     }
@@ -291,7 +291,7 @@ TEST_CASE("relativistic motion in a constant electric field is a hyperbola", "[i
           compose(in_field(field, {.relativistic = how, .c = 1.0}), schemes::verlet_aba), h, std::llround(10 / h));
       return std::abs(s.positions()[0][0] - (std::sqrt(101.0) - 1));
     };
-    CHECK(std::log2(error(0.1) / error(0.05)) == Approx(2).margin(0.05));
+    CHECK(std::abs(std::log2(error(0.1) / error(0.05)) - 2) <= 0.05);
   }
 }
 

@@ -75,7 +75,7 @@ TEST_CASE("relativistic pushers: one step, and whether they keep the volume", "[
       CAPTURE(k);
       CHECK((push<double>(by, one.u, a, rate, 1, 1) - one.after[k]).norm() < 1e-14 * one.u.norm());
       const double volume = determinant(by, one.u, a, rate) - 1;
-      if (by == Push::vay) CHECK(volume == Approx(one.vay_volume).epsilon(1e-3));
+      if (by == Push::vay) CHECK(std::abs(volume / one.vay_volume - 1) <= 1e-3);
       if (by != Push::vay) CHECK(std::abs(volume) < 1e-14);
       // Time symmetric: the step back undoes it.
       const V there = push<double>(by, one.u, a, rate, 1, 0.3);
@@ -94,8 +94,8 @@ TEST_CASE("relativistic pushers at speeds and turns beyond all measure", "[integ
         // in which large angles take the digits of u.
         const double rounding = by == Push::vay ? 1e-15 * std::max(1.0, turn) : 1e-15;
         const V after = push<double>(by, u, V(0, 0, 0), rate, 1, 1);
-        CHECK(after.norm() == Approx(u.norm()).epsilon(10 * rounding));
-        CHECK(dot(after, rate) == Approx(dot(u, rate)).epsilon(10 * rounding));
+        CHECK(std::abs(after.norm() / u.norm() - 1) <= 10 * rounding);
+        CHECK(std::abs(dot(after, rate) / dot(u, rate) - 1) <= 10 * rounding);
       }
     }
   }
@@ -103,7 +103,7 @@ TEST_CASE("relativistic pushers at speeds and turns beyond all measure", "[integ
   const V u(0, 0, 0), E(5, 0, 0), B(0, 0, 1);
   for (const Push by : {Push::boris, Push::vay, Push::higuera_cary}) {
     const V after = push<double>(by, u, E, B, 1, 1e-3);
-    CHECK(after[0] == Approx(5e-3).epsilon(1e-5));
+    CHECK(std::abs(after[0] / 5e-3 - 1) <= 1e-5);
     CHECK(std::abs(after[1]) < 3e-6);
   }
 }
@@ -119,7 +119,7 @@ TEST_CASE("a force-free field: Boris drifts, the others do not", "[integrators][
         u = push<double>(by, u, E, B, 1, 1);
         worst = std::max(worst, (u - u0).norm() / gamma);
       }
-      if (by == Push::boris) CHECK(worst == Approx(expected).epsilon(1e-3));
+      if (by == Push::boris) CHECK(std::abs(worst / expected - 1) <= 1e-3);
       if (by != Push::boris) CHECK(worst < 1e-13);
     }
   }
@@ -137,9 +137,9 @@ TEST_CASE("the angle of a step of Boris's, corrected and in cycles", "[integrato
                          Row{4, 2, 0.09999479215489343316, 0.49935047996765878779, 1.95982930501491323337}}) {
     CAPTURE(row.cycles, row.order);
     const GyrationAngle<double> turn(row.cycles, row.order);
-    CHECK(angle_a_step(turn, 0.1) == Approx(row.at_small).epsilon(2e-15));
-    CHECK(angle_a_step(turn, 0.5) == Approx(row.at_half).epsilon(2e-15));
-    CHECK(angle_a_step(turn, 2) == Approx(row.at_two).epsilon(2e-15));
+    CHECK(std::abs(angle_a_step(turn, 0.1) / row.at_small - 1) <= 2e-15);
+    CHECK(std::abs(angle_a_step(turn, 0.5) / row.at_half - 1) <= 2e-15);
+    CHECK(std::abs(angle_a_step(turn, 2) / row.at_two - 1) <= 2e-15);
   }
   // Slopes of the error of the angle, order by order.
   for (const std::int64_t order : {2, 4, 6, 8}) {
@@ -150,7 +150,7 @@ TEST_CASE("the angle of a step of Boris's, corrected and in cycles", "[integrato
       return static_cast<double>(abs(-v[1] - exact.sine));
     };
     const double slope = std::log2(error(0.2) / error(0.1));
-    CHECK(slope == Approx(static_cast<double>(order) + 1).epsilon(0.03));
+    CHECK(std::abs(slope / (static_cast<double>(order) + 1) - 1) <= 0.03);
   }
 }
 
