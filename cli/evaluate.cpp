@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -83,20 +84,22 @@ void print_text(const Scene& scene, const Evaluation& e) {
     return std::isnan(value) ? "unknown" : format_number(value) + (unit == "1" ? "" : " " + unit);
   };
   const auto energy = [&](double value) { return with_unit(value, dimensions::energy); };
-  fmt::print("{:<22}{}\n", "total energy", energy(e.kinetic + e.potential));
-  fmt::print("{:<22}{}\n", "  kinetic", energy(e.kinetic));
-  fmt::print("{:<22}{}\n", "  potential", energy(e.potential));
-  for (const auto& [name, value] : e.terms) fmt::print("    {:<18}{}\n", name, energy(value));
-  fmt::print("{:<22}{}\n", "trace of the virial", energy(e.virial.trace()));
+  std::size_t width = 22;
+  for (const auto& [name, value] : e.terms) width = std::max(width, name.size() + 5);
+  fmt::print("{:<{}}{}\n", "total energy", width, energy(e.kinetic + e.potential));
+  fmt::print("{:<{}}{}\n", "  kinetic", width, energy(e.kinetic));
+  fmt::print("{:<{}}{}\n", "  potential", width, energy(e.potential));
+  for (const auto& [name, value] : e.terms) fmt::print("    {:<{}}{}\n", name, width - 4, energy(value));
+  fmt::print("{:<{}}{}\n", "trace of the virial", width, energy(e.virial.trace()));
   if (e.pressure) {
     const UnitSystem& units = *scene.units;
-    fmt::print("{:<22}{}{}\n", "pressure", format_number(*e.pressure),
+    fmt::print("{:<{}}{}{}\n", "pressure", width, format_number(*e.pressure),
                units.is_reduced() ? "" : fmt::format(" {}/{}^3", units.energy, units.length));
   }
-  fmt::print("{:<22}{}\n", "largest force", with_unit(e.force_max, dimensions::force));
+  fmt::print("{:<{}}{}\n", "largest force", width, with_unit(e.force_max, dimensions::force));
   if (!e.gradient_error) return;
   const Index particles = scene.particles.size(), asked = e.gradient_asked;
-  fmt::print("{:<22}{:.2g} of the largest force{}{}\n", "force against -grad U", *e.gradient_error,
+  fmt::print("{:<{}}{:.2g} of the largest force{}{}\n", "force against -grad U", width, *e.gradient_error,
              has_bodies(scene.particles) ? " or torque" : "",
              asked < particles ? fmt::format(", checked at {} of {}", asked, counted(particles, "particle")) : "");
 }

@@ -1,5 +1,7 @@
 #include "cli/gyration_text.hpp"
 
+#include "engine/proper_velocity.hpp"
+#include "forces/electromagnetic_field.hpp"
 #include "scene/scene.hpp"
 
 #include <fmt/format.h>
@@ -11,23 +13,20 @@
 namespace noether {
 
 std::string gyration_text(const Scene& scene) {
-  const ForceField<double> forces = forces_of(scene);
-  if (!forces.claims().gyrates) return "";
+  const ForceField<double> fields = fields_among(forces_of(scene));
+  if (fields.terms().empty()) return "";
   ParticleSystem<double> s = scene.particles;
   s.clock() = Clock<double>::fixed(scene.integrator.start, scene.integrator.step);
   VectorColumn<double> a(s.size()), rates(s.size());
   ForceSink<double> sink(a, s, {});
   sink.set_gyrations(rates);
-  for (const AnyForce<double>& force : forces.terms()) {
-    if (force.claims().gyrates) force.add_to(sink, s);
-  }
+  fields.add_to(sink, s);
   Index fastest = 0;
   double most = -1;
   for (Index i = 0; i < s.size(); ++i) {
     double rate = Vec3<double>(std::as_const(rates)[i]).norm();
     if (const auto& c = scene.hamiltonian.splitting.c) {
-      const double beta = Vec3<double>(s.velocities()[i]).norm() / *c;
-      rate *= std::sqrt((1 - beta) * (1 + beta));
+      rate /= static_cast<double>(gamma_of_velocity(whole_velocity(s, i), Quad(*c)));
     }
     if (rate <= most) continue;
     most = rate;

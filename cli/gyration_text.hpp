@@ -7,8 +7,8 @@ namespace noether {
 
 struct Scene;
 
-/// "gyration: 'ion' turns by 0.299 rad a step at the start, 21 steps a turn": of the charge that turns fastest, and how
-/// far its rotation is from that; empty without a field.
+/// "gyration: 'ion' turns by 0.299 rad a step at the start, 21 steps a turn": of the charge that turns fastest; empty
+/// without a field.
 std::string gyration_text(const Scene& scene);
 
 }  // namespace noether

@@ -139,8 +139,8 @@ template <class Real> class ForceSink {
   void torque(Index i, const Vec3<Real>& t) {
     if (torques_ != nullptr) torques_->add(i, t);
   }
-  /// Lets fields write how they turn velocities, v' = v x rate, into a column, set to zero here [1/time]: a sink
-  /// without one gets v x rate among the accelerations.
+  /// Lets fields write the rates at which they turn velocities, v' = v x rate with rate = q B/m [1/time], into a
+  /// column, set to zero here: a sink without one gets v x rate among the accelerations.
   void set_gyrations(VectorColumn<Real>& rates) {
     gyrations_ = &rates;
     rates.set_zero();

@@ -47,8 +47,10 @@ template <class Real> Real cel_mean(Real kc, Real p, Real a, Real b) {
 
 /// Adds B and A of a loop of radius `a` about the z axis in the plane z = 0; `B0` is B at its center.
 ///
-///     B_rho = C z/s^3 cel_mean(k', k'^2, -1, 1),  B_z = C/s^3 cel_mean(k', k'^2, a + rho, a - rho),  A_phi = C/s
-///     cel_mean(k', 1, -1, 1) s^2 = (a + rho)^2 + z^2,  k'^2 = ((a - rho)^2 + z^2)/s^2,  C = B0 a^2
+///     B_rho = C z/s^3 cel_mean(k', k'^2, -1, 1)
+///     B_z   = C/s^3 cel_mean(k', k'^2, a + rho, a - rho)
+///     A_phi = C/s cel_mean(k', 1, -1, 1)
+///     s^2 = (a + rho)^2 + z^2,  k'^2 = ((a - rho)^2 + z^2)/s^2,  C = B0 a^2
 template <class Real> void add_loop(const Real& B0, const Real& a, const Vec3<Real>& x, FieldValues<Real>& field) {
   using std::sqrt;
   const Real rho2 = x[0] * x[0] + x[1] * x[1], z = x[2];

@@ -5,6 +5,7 @@
 #include "engine/charge.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "forces/sum.hpp"
 #include "numbers/parallel.hpp"
 
 #include <string>
@@ -81,6 +82,7 @@ template <class F> struct InField : F {
   void check() const { check_part(static_cast<const F&>(*this)); }
   /// @throws Error  where particles have no charges
   template <class Real> void check(const ParticleSystem<Real>& s) const {
+    if constexpr (requires { this->expect_values(); }) this->expect_values();
     if (!s.template has<Charge>()) {
       throw Error("the field '" + detail::name_of(static_cast<const F&>(*this)) +
                   "' acts on charges, but the particles have none; give them a column `charge`");
@@ -112,7 +114,7 @@ template <class F> struct InField : F {
       FieldValues<Real> here;
       const Vec3<Real> x = s.positions()[i];
       if constexpr (requires { this->covers(x); }) {
-        if (!this->covers(x)) out.fail(beyond(s, i));
+        if (!this->covers(x)) return out.fail(beyond(s, i));
       }
       this->at(t, x, here);
       out.force(i, Vec3<Real>(q * here.E));
@@ -120,7 +122,7 @@ template <class F> struct InField : F {
       if (out.wants_energy()) out.energy(q * here.phi);
       if (momenta) out.field_momentum(i, Vec3<Real>(q * here.A));
     };
-    // Rows of their own, by threads; sums over all charges, and a failure, by one of them.
+    // Threads may write rows of accelerations. Energies, and a failure, belong to all charges: one thread tells them.
     constexpr bool anywhere = !requires(const Vec3<Real>& x) { this->covers(x); };
     if constexpr (anywhere && std::is_same_v<Real, double>) {
       if (!out.wants_energy() && !out.wants_virial()) {
@@ -135,5 +137,15 @@ template <class F> struct InField : F {
 };
 
 template <class F> InField(F) -> InField<F>;
+
+/// The fields among forces; of forces that the compiler knows, all.
+template <class F> F fields_among(const F& forces) { return forces; }
+template <class Real> ForceField<Real> fields_among(const ForceField<Real>& forces) {
+  ForceField<Real> fields;
+  for (const AnyForce<Real>& term : forces.terms()) {
+    if (term.claims().gyrates) fields.add(term);
+  }
+  return fields;
+}
 
 }  // namespace noether

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 namespace noether {
 
@@ -86,7 +85,7 @@ Cell cell_at(const FieldGrid& grid, const Vec3<double>& x) {
   for (std::size_t k = 0; k < 3; ++k) {
     const double place = (x[static_cast<Index>(k)] - grid.origin[k]) / grid.spacing[k];
     const auto last = static_cast<double>(grid.counts[k] - 4);
-    const double low = std::clamp(std::floor(place), 2.0, last);
+    const double within = std::clamp(std::floor(place), 2.0, last), low = within >= 2 ? within : 2;  // a NaN is none
     cell.first[k] = static_cast<Index>(low) - 2;
     cell.weights[k] = weights_at(place - low);
   }
@@ -110,9 +109,10 @@ void FieldGrid::check() const {
     if (!(spacing[k] > 0)) throw Error(fmt::format("a spacing of {} is not a length above 0", spacing[k]));
   }
   const auto places = static_cast<std::size_t>(counts[0] * counts[1] * counts[2]);
-  if (A.empty() == B.empty()) throw Error("a grid has either A or B; give one of the two");
+  if (!A.empty() && !B.empty()) throw Error("a grid has either A or B; take one of the two out");
+  if (A.empty() && B.empty() && phi.empty()) throw Error("a grid has no values; give A, B or phi");
   const std::vector<double>& vectors = A.empty() ? B : A;
-  if (vectors.size() != 3 * places || (!phi.empty() && phi.size() != places)) {
+  if ((!vectors.empty() && vectors.size() != 3 * places) || (!phi.empty() && phi.size() != places)) {
     throw Error(fmt::format("a grid of {} x {} x {} places has {} numbers of {} and {} of phi", counts[0], counts[1],
                             counts[2], vectors.size(), A.empty() ? "B" : "A", phi.size()));
   }
@@ -123,17 +123,25 @@ void FieldGrid::check() const {
   }
 }
 
-std::string GridField::signature() const {
+std::uint64_t FieldGrid::fingerprint() const {
+  if (known_fingerprint != 0) return known_fingerprint;
   std::uint64_t hash = 14695981039346656037ULL;
-  if (grid != nullptr) {
-    hash = hash_of(hash, grid->counts.data(), sizeof(grid->counts));
-    hash = hash_of(hash, grid->origin.data(), sizeof(grid->origin));
-    hash = hash_of(hash, grid->spacing.data(), sizeof(grid->spacing));
-    for (const std::vector<double>* list : {&grid->A, &grid->B, &grid->phi}) {
-      hash = hash_of(hash, list->data(), list->size() * sizeof(double));
-    }
+  hash = hash_of(hash, counts.data(), sizeof(counts));
+  hash = hash_of(hash, origin.data(), sizeof(origin));
+  hash = hash_of(hash, spacing.data(), sizeof(spacing));
+  for (const std::vector<double>* list : {&A, &B, &phi}) {
+    hash = hash_of(hash, list->data(), list->size() * sizeof(double));
   }
-  return fmt::format("field_grid(values {:016x})", hash);
+  return known_fingerprint = hash;
+}
+
+std::string GridField::signature() const {
+  return fmt::format("field_grid(values {:016x})", grid != nullptr ? grid->fingerprint() : 0);
+}
+
+void GridField::expect_values() const {
+  if (grid == nullptr) throw Error("a field_grid has no grid; give it one, or a file in a scene");
+  grid->check();
 }
 
 bool GridField::covers(const Vec3<double>& x) const {
@@ -147,9 +155,11 @@ bool GridField::covers(const Vec3<double>& x) const {
 double GridField::divergence() const {
   if (grid->B.empty()) return 0;
   double largest = 0, strongest = 0;
-  for (Index i = 2; i + 3 < grid->counts[0]; ++i) {
-    for (Index j = 2; j + 3 < grid->counts[1]; ++j) {
-      for (Index k = 2; k + 3 < grid->counts[2]; ++k) {
+  const auto cells = static_cast<double>(grid->counts[0] * grid->counts[1] * grid->counts[2]);
+  const auto stride = std::max(Index{1}, static_cast<Index>(std::lround(std::cbrt(cells / 1e5))));
+  for (Index i = 2; i + 3 < grid->counts[0]; i += stride) {
+    for (Index j = 2; j + 3 < grid->counts[1]; j += stride) {
+      for (Index k = 2; k + 3 < grid->counts[2]; k += stride) {
         const std::array<Index, 3> low = {i, j, k};
         Vec3<double> x;
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -178,7 +188,7 @@ void GridField::interpolate(const Vec3<double>& x, FieldValues<double>& field) c
     for (std::size_t c = 0; c < 3; ++c) A[c] = between(*grid, grid->A, 3, c, cell);
     field.A = Vec3<double>(A[0].value, A[1].value, A[2].value);
     field.B = Vec3<double>(A[2].slope[1] - A[1].slope[2], A[0].slope[2] - A[2].slope[0], A[1].slope[0] - A[0].slope[1]);
-  } else {
+  } else if (!grid->B.empty()) {
     for (std::size_t c = 0; c < 3; ++c) field.B[static_cast<Index>(c)] = between(*grid, grid->B, 3, c, cell).value;
   }
   if (grid->phi.empty()) return;

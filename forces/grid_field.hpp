@@ -5,6 +5,7 @@
 
 #include <array>
 #include <concepts>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,9 +19,13 @@ struct FieldGrid {
   std::vector<double> A;                                          ///< shape (nx, ny, nz, 3) [mass length/time/charge]
   std::vector<double> B;                                          ///< the same, instead of A [mass/time/charge]
   std::vector<double> phi;                                        ///< shape (nx, ny, nz) [energy/charge]
+  mutable std::uint64_t known_fingerprint = 0;                    ///< 0: not asked for yet
 
-  /// @throws Error  for shapes that do not fit, too few places, and for B beside A
+  /// @throws Error  for shapes that do not fit, too few places, B beside A, and for values that are not finite
   void check() const;
+  /// Tells grids apart by all their numbers.
+  /// @cost one look at all of them, at the first call
+  std::uint64_t fingerprint() const;
   /// Values of a field at the places of a grid: A of it where it tells A, else B, and phi where it is not 0.
   template <class F>
   static FieldGrid of(const F& field, std::array<Index, 3> counts, std::array<double, 3> origin,
@@ -49,9 +54,12 @@ struct GridField {
   /// Tells files of the same name apart.
   std::string signature() const;
 
+  /// @throws Error  without a grid, and as its `check` does
+  void expect_values() const;
   /// Whether the field is known there.
   bool covers(const Vec3<double>& x) const;
-  /// Largest |div B| in the middles of cells, relative to the largest |B| over a spacing.
+  /// Largest |div B| in the middles of cells, relative to the largest |B| over a spacing; of a large grid in some 1e5
+  /// of them.
   double divergence() const;
 
   template <std::same_as<double> Real> void at(const Real& /*t*/, const Vec3<Real>& x, FieldValues<Real>& field) const {

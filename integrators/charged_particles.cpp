@@ -1,5 +1,7 @@
 #include "integrators/charged_particles.hpp"
 
+#include "forces/speed_of_light.hpp"
+
 #include <fmt/format.h>
 
 namespace noether {
@@ -25,7 +27,7 @@ void ChargedParticlesOptions::check() const {
     refuse_field("rotation", rotation == Rotation::boris ? "\"boris\"" : "\"hyper_boris\"",
                  "is for slow particles; relativistic says how fast ones turn, so take one of the two out");
   }
-  if (c && !(*c > 0)) refuse_field("c", *c, "is not a valid speed of light; a speed above 0 is expected");
+  check_speed_of_light(c);
   if (c && relativistic == Relativistic::no) {
     refuse_field("c", *c, "is that of relativistic particles; give relativistic = \"higuera_cary\", or take it out");
   }

@@ -4,13 +4,14 @@
 #include "engine/concepts.hpp"
 #include "engine/description.hpp"
 #include "engine/erasure.hpp"
+#include "engine/proper_velocity.hpp"
 #include "forces/sum.hpp"
 #include "integrators/field_forces.hpp"
 #include "integrators/gyration.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "numbers/parallel.hpp"
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -97,66 +98,47 @@ struct ChargedParticlesOptions {
 ///
 /// @cost one evaluation of the fields and forces per B; 40 operations a particle for the turn, and with `exact` a sine
 /// @source Boris1970, QinEtAl2013, HeEtAl2015, Vay2008, HigueraCary2017, ZenitaniKato2020
-template <class F, class Real = double> class ChargedParticles {
+template <class F, class Real = double> class ChargedParticles : public detail::ChargesInFields<F, Real> {
  public:
-  using real = Real;
-
   /// @throws SchemeMismatch  if a force depends on velocities otherwise than fields do; Error for options that do not
   ///         go together
   explicit ChargedParticles(F forces, ChargedParticlesOptions options = {})
-      : forces_(std::move(forces), "charged_particles"), options_(options), turn_(turn_of(options)) {
+      : detail::ChargesInFields<F, Real>(std::move(forces), "charged_particles"),
+        options_(options),
+        angle_(angle_of(options)) {
     options_.check();
   }
 
   std::string name() const { return "charged_particles"; }
-  const F& forces() const { return forces_.forces(); }
   HamiltonianClaims claims() const {
-    const ForceClaims forces = forces_.claims();
     const bool exact = options_.rotation == Rotation::exact && !relativistic();
-    return {.alphabet = "AB",
-            .inexact = exact ? "" : "B",
-            .basic = exact ? "BAB" : "ABA",  // no two maps of order 2 are joined
-            .kicks = "B",
-            .quadratic_kinetic = false,
-            .symplectic = false,
-            .energy = forces.energy,
-            .time_dependent = forces.time_dependent,
-            .dissipative = forces.dissipative,
-            .no_action = "no Hamiltonian has its kicks, which turn velocities, as a flow, so the motion has no action",
-            .coordinates = std::uint8_t(relativistic() ? proper_velocities : 0),
-            .inertial = !relativistic(),
-            .velocity_forces = true,
-            .neighbors = true,
-            .keeps_momentum = forces.keeps_momentum,
-            .keeps_angular_momentum = forces.keeps_angular_momentum};
+    return this->with_forces(
+        {.alphabet = "AB",
+         .inexact = exact ? "" : "B",
+         .basic = exact ? "BAB" : "ABA",  // no two maps of order 2 are joined
+         .symplectic = false,
+         .no_action = "no Hamiltonian has its kicks, which turn velocities, as a flow, so the motion has no action",
+         .coordinates = std::uint8_t(relativistic() ? proper_velocities : 0),
+         .inertial = !relativistic(),
+         .keeps_momentum = !relativistic(),  // of m v, which is what is watched
+         .keeps_angular_momentum = !relativistic()});
   }
 
   /// @throws Error  without a speed of light that a relativistic run needs, and for particles as fast as it
   void bind(ParticleSystem<Real>& s);
-  void expect_kicks(double longest) { forces_.expect_kicks(longest); }
-  bool set_neighbor_options(const NeighborOptions& options) {
-    forces_.set_neighbor_options(options);
-    return true;
-  }
   void open(ParticleSystem<Real>& s);
   void close(ParticleSystem<Real>& s);
   void flow(char letter, ParticleSystem<Real>& s, const Real& h);
-  /// @throws LogicError  always
-  Real flow_with_action(char /*letter*/, ParticleSystem<Real>& /*s*/, const Real& /*h*/) {
-    throw LogicError("a kick that turns velocities has no action");
-  }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s);
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a);
-
-  void observe(std::optional<Request> wanted) { observing_ = wanted; }
-  const std::optional<Failure>& failure() const { return forces_.failure(); }
-  Evaluations evaluations() const { return forces_.evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const;
   void load(const SavedState& saved, const std::string& prefix);
 
  private:
-  static constexpr std::uint8_t proper_velocities = 9;
-  static GyrationAngle<Real> turn_of(const ChargedParticlesOptions& options) {
+  using Base = detail::ChargesInFields<F, Real>;
+  using Base::forces_, Base::observing_;
+
+  static GyrationAngle<Real> angle_of(const ChargedParticlesOptions& options) {
     if (options.rotation == Rotation::boris) return GyrationAngle<Real>(1, 2);
     return options.rotation == Rotation::exact ? GyrationAngle<Real>()
                                                : GyrationAngle<Real>(options.cycles, options.gyrophase_order);
@@ -166,11 +148,9 @@ template <class F, class Real = double> class ChargedParticles {
   void kick(ParticleSystem<Real>& s, const Real& h);
   Vec3<Real> pushed(const Vec3<Real>& u, Index i, const Real& h) const;
 
-  detail::FieldForces<F, Real> forces_;
   ChargedParticlesOptions options_;
-  GyrationAngle<Real> turn_;
+  GyrationAngle<Real> angle_;
   Real c_ = Real(0);  ///< speed of light, where it matters
-  std::optional<Request> observing_;
 };
 
 template <class Real> AnyHamiltonian<Real> ChargedParticlesOptions::split(ForceField<Real> forces) const {

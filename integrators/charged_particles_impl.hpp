@@ -3,41 +3,13 @@
 
 #include "integrators/charged_particles.hpp"
 
+#include "engine/proper_velocity.hpp"
 #include "forces/speed_of_light.hpp"
+#include "numbers/parallel.hpp"
 
 #include <cmath>
 
 namespace noether {
-
-namespace detail {
-
-/// Numbers in which the speeds of particles near that of light keep their digits: 1 - v^2/c^2 has none in doubles.
-template <class Real> using FastNumber = std::conditional_t<std::is_same_v<Real, double>, Quad, Real>;
-
-/// Sum of both words of a velocity.
-template <class Real> Vec3<FastNumber<Real>> whole_velocity(const ParticleSystem<Real>& s, Index i) {
-  using Wide = FastNumber<Real>;
-  Vec3<Wide> v;
-  for (int k = 0; k < 3; ++k) {
-    v[k] = Wide(s.velocities().component(k)[i]);
-    if (s.low_words() != nullptr) v[k] += Wide(s.low_words()->v.component(k)[i]);
-  }
-  return v;
-}
-template <class Real> void set_whole_velocity(ParticleSystem<Real>& s, Index i, const Vec3<FastNumber<Real>>& v) {
-  for (int k = 0; k < 3; ++k) {
-    const Real high = Real(v[k]);
-    s.velocities().component(k)[i] = high;
-    if (s.low_words() != nullptr) s.low_words()->v.component(k)[i] = Real(v[k] - FastNumber<Real>(high));
-  }
-}
-/// gamma of a velocity.
-template <class Wide> Wide gamma_of_velocity(const Vec3<Wide>& v, const Wide& c) {
-  using std::sqrt;
-  return Wide(1) / sqrt(Wide(1) - norm2(v) / (c * c));
-}
-
-}  // namespace detail
 
 template <class F, class Real> void ChargedParticles<F, Real>::bind(ParticleSystem<Real>& s) {
   forces_.bind(s);
@@ -48,7 +20,7 @@ template <class F, class Real> void ChargedParticles<F, Real>::bind(ParticleSyst
   c_ = speed_of_light_in(s, options_.c, "charged_particles");
   if (s.phase().coordinates != 0) return;
   for (Index i = 0; i < s.size(); ++i) {
-    const auto v = detail::whole_velocity(s, i);
+    const auto v = whole_velocity(s, i);
     if (norm2(v) < c_ * c_) continue;
     throw Error("'" + s.name(i) + "' is as fast as light or faster; speeds below c are expected");
   }
@@ -56,10 +28,10 @@ template <class F, class Real> void ChargedParticles<F, Real>::bind(ParticleSyst
 
 template <class F, class Real> void ChargedParticles<F, Real>::open(ParticleSystem<Real>& s) {
   if (!relativistic()) return;
-  using Wide = detail::FastNumber<Real>;
+  using Wide = FastNumber<Real>;
   for (Index i = 0; i < s.size(); ++i) {
-    const Vec3<Wide> v = detail::whole_velocity(s, i);
-    detail::set_whole_velocity<Real>(s, i, detail::gamma_of_velocity(v, Wide(c_)) * v);
+    const Vec3<Wide> v = whole_velocity(s, i);
+    set_whole_velocity<Real>(s, i, gamma_of_velocity(v, Wide(c_)) * v);
   }
   s.phase().coordinates = proper_velocities;
 }
@@ -67,12 +39,12 @@ template <class F, class Real> void ChargedParticles<F, Real>::open(ParticleSyst
 template <class F, class Real> void ChargedParticles<F, Real>::close(ParticleSystem<Real>& s) {
   if (!relativistic()) return;
   using std::sqrt;
-  using Wide = detail::FastNumber<Real>;
+  using Wide = FastNumber<Real>;
   if constexpr (std::is_same_v<Real, double>) s.keep_low_words(true);
   const Wide c2 = Wide(c_) * Wide(c_);
   for (Index i = 0; i < s.size(); ++i) {
-    const Vec3<Wide> u = detail::whole_velocity(s, i);
-    detail::set_whole_velocity<Real>(s, i, u / Wide(sqrt(Wide(1) + norm2(u) / c2)));
+    const Vec3<Wide> u = whole_velocity(s, i);
+    set_whole_velocity<Real>(s, i, u / Wide(sqrt(Wide(1) + norm2(u) / c2)));
   }
   s.phase().coordinates = 0;
 }
@@ -108,7 +80,7 @@ Vec3<Real> ChargedParticles<F, Real>::pushed(const Vec3<Real>& u, Index i, const
     case Relativistic::no:
       break;
   }
-  return turned(u, a, rate, turn_, h);
+  return turned(u, a, rate, angle_, h);
 }
 
 template <class F, class Real> void ChargedParticles<F, Real>::kick(ParticleSystem<Real>& s, const Real& h) {
@@ -130,11 +102,11 @@ template <class F, class Real> void ChargedParticles<F, Real>::kick(ParticleSyst
 template <class F, class Real> EnergyTerms<Real> ChargedParticles<F, Real>::energy(const ParticleSystem<Real>& s) {
   forces_.evaluate(s, true);
   if (!relativistic()) return {kinetic_energy(s), forces_.potential()};
-  using Wide = detail::FastNumber<Real>;
+  using Wide = FastNumber<Real>;
   const Real kinetic = sum_over<Real>(s.size(), [&](Index i) {
     // m c^2 (gamma - 1) without the difference
-    const Vec3<Wide> v = detail::whole_velocity(s, i);
-    const Wide gamma = detail::gamma_of_velocity(v, Wide(c_)), u2 = gamma * gamma * norm2(v);
+    const Vec3<Wide> v = whole_velocity(s, i);
+    const Wide gamma = gamma_of_velocity(v, Wide(c_)), u2 = gamma * gamma * norm2(v);
     return s.masses()[i] * Real(u2 / (gamma + Wide(1)));
   });
   return {kinetic, forces_.potential()};
@@ -144,12 +116,12 @@ template <class F, class Real>
 void ChargedParticles<F, Real>::accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
   forces_.evaluate(s, false);
   if (a.size() != s.size()) a = VectorColumn<Real>(s.size());
-  using Wide = detail::FastNumber<Real>;
+  using Wide = FastNumber<Real>;
   for (Index i = 0; i < s.size(); ++i) {
     const Vec3<Real> v = s.velocities()[i];
     Vec3<Real> all = forces_.acceleration(i) + cross(v, forces_.rate(i));
     if (relativistic()) {  // u' = all, v = u/gamma
-      const Real gamma(detail::gamma_of_velocity(detail::whole_velocity(s, i), Wide(c_)));
+      const Real gamma(gamma_of_velocity(whole_velocity(s, i), Wide(c_)));
       all = (all - dot(v, all) / (c_ * c_) * v) / gamma;
     }
     a.set(i, all);

@@ -3,6 +3,7 @@
 
 #include "engine/description.hpp"
 #include "engine/erasure.hpp"
+#include "engine/proper_velocity.hpp"
 #include "forces/linear_drag.hpp"
 #include "integrators/wrapped.hpp"
 
@@ -26,6 +27,10 @@ template <SplitHamiltonian H> class Damped : public Wrapped<H> {
     if (!(drag.rate >= 0))
       throw Error("a drag rate of " + std::to_string(drag.rate) +
                   " would drive the motion instead of damping it; give 0 or more");
+    if (Wrapped<H>::claims().coordinates == proper_velocities) {
+      throw SchemeMismatch(
+          "linear drag slows velocities, but relativistic particles go by u = gamma v; take one of the two out");
+    }
   }
 
   std::string name() const { return "damped"; }

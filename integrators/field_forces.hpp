@@ -7,6 +7,7 @@
 #include "forces/electromagnetic_field.hpp"
 #include "neighbors/neighbor_list.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -18,6 +19,7 @@ namespace noether::detail {
 template <class F> struct OnCharges { using type = std::conditional_t<Force<F, double>, F, InField<F>>; };
 
 /// Accelerations but for v x Omega, and Omega, of a sum of forces; evaluated where they are not known, and counted.
+/// (The kicks of `KineticPotential` keep the like for several letters, with torques, virials and constraints.)
 template <class F, class Real> class FieldForces {
  public:
   /// @param who  the Hamiltonian, in messages
@@ -58,6 +60,7 @@ template <class F, class Real> class FieldForces {
     last_failure_ = sink.failure();
     known_ = Known{s.version(), time, energy};
   }
+  const VectorColumn<Real>& accelerations() const { return acceleration_; }
   Vec3<Real> acceleration(Index i) const { return acceleration_[i]; }
   Vec3<Real> rate(Index i) const { return rate_[i]; }
   const Real& potential() const { return potential_; }
@@ -70,6 +73,8 @@ template <class F, class Real> class FieldForces {
     if (last_failure_ && !failure_) failure_ = last_failure_;
     if (std::exchange(moved_, false)) ++evaluations_;
   }
+  /// The run has used so many more, of places beside its particles.
+  void count_beside(std::int64_t evaluations) { evaluations_ += evaluations; }
   const std::optional<Failure>& failure() const { return failure_; }
   Evaluations evaluations() const {
     Evaluations all{.force = evaluations_};
@@ -108,6 +113,46 @@ template <class F, class Real> class FieldForces {
   Workspace workspace_;
   double longest_kick_ = 0;
   std::int64_t evaluations_ = 0;
+};
+
+/// What splittings of charges have in common, beside their flows.
+template <class F, class Real> class ChargesInFields {
+ public:
+  using real = Real;
+
+  const F& forces() const { return forces_.forces(); }
+  void expect_kicks(double longest) { forces_.expect_kicks(longest); }
+  bool set_neighbor_options(const NeighborOptions& options) {
+    forces_.set_neighbor_options(options);
+    return true;
+  }
+  /// @throws LogicError  always
+  Real flow_with_action(char /*letter*/, ParticleSystem<Real>& /*s*/, const Real& /*h*/) {
+    throw LogicError("motion by x and v in a magnetic field has no action");
+  }
+  void observe(std::optional<Request> wanted) { observing_ = wanted.has_value(); }
+  const std::optional<Failure>& failure() const { return forces_.failure(); }
+  Evaluations evaluations() const { return forces_.evaluations(); }
+
+ protected:
+  ChargesInFields(F forces, const char* who) : forces_(std::move(forces), who) {}
+
+  /// What the forces make of the claims of a splitting.
+  HamiltonianClaims with_forces(HamiltonianClaims claims) const {
+    const ForceClaims forces = forces_.claims();
+    claims.kicks = "B";
+    claims.quadratic_kinetic = false;
+    claims.energy = forces.energy;
+    claims.time_dependent = forces.time_dependent;
+    claims.dissipative = forces.dissipative;
+    claims.velocity_forces = claims.neighbors = true;
+    claims.keeps_momentum = claims.keeps_momentum && forces.keeps_momentum;
+    claims.keeps_angular_momentum = claims.keeps_angular_momentum && forces.keeps_angular_momentum;
+    return claims;
+  }
+
+  FieldForces<F, Real> forces_;
+  bool observing_ = false;
 };
 
 }  // namespace noether::detail

@@ -93,7 +93,7 @@ template <class Real> Vec3<Real> full_turn_about(const Vec3<Real>& u, const Vec3
   const Vec3<Real> across = cross(u, t);
   return Real(2) / (Real(1) + norm2(t)) * (across + cross(across, t));
 }
-/// u after half of that turn, and shorter.
+/// u turned by half of that angle and shortened by its cosine.
 template <class Real> Vec3<Real> half_turned_about(const Vec3<Real>& u, const Vec3<Real>& t) {
   return (u + dot(u, t) * t + cross(u, t)) / (Real(1) + norm2(t));
 }

@@ -51,51 +51,28 @@ struct KSymplecticOptions {
 /// compositions join in X. Other forces do not depend on velocities.
 /// @cost `nodes` evaluations of the fields for each of X, Y, Z, and one of all forces per B
 /// @source HeEtAl2017
-template <class F, class Real = double> class KSymplectic {
+template <class F, class Real = double> class KSymplectic : public detail::ChargesInFields<F, Real> {
  public:
-  using real = Real;
-
   /// @throws SchemeMismatch  if a force depends on velocities otherwise than fields do
   explicit KSymplectic(F forces, KSymplecticOptions options = {});
 
   std::string name() const { return "k_symplectic"; }
   HamiltonianClaims claims() const {
-    const ForceClaims forces = forces_.claims();
-    return {.alphabet = "BXYZ",
-            .timed = "X",
-            .basic = "XYZBZYX",
-            .kicks = "B",
-            .quadratic_kinetic = false,
-            .energy = forces.energy,
-            .time_dependent = forces.time_dependent,
-            .dissipative = forces.dissipative,
-            .no_action = "its momenta are m v + q A, and steps know v alone, so the motion has no action here",
-            .velocity_forces = true,
-            .neighbors = true,
-            .keeps_momentum = forces.keeps_momentum,
-            .keeps_angular_momentum = forces.keeps_angular_momentum};
+    return this->with_forces(
+        {.alphabet = "BXYZ",
+         .timed = "Z",
+         .basic = "XYZBZYX",
+         .no_action = "its momenta are m v + q A, and steps know v alone, so the motion has no action here"});
   }
   void bind(ParticleSystem<Real>& s);
-  void expect_kicks(double longest) { forces_.expect_kicks(longest); }
-  bool set_neighbor_options(const NeighborOptions& options) {
-    forces_.set_neighbor_options(options);
-    return true;
-  }
   void open(ParticleSystem<Real>& /*inertial already*/) {}
   void close(ParticleSystem<Real>& /*inertial already*/) {}
   void flow(char letter, ParticleSystem<Real>& s, const Real& h);
-  /// @throws LogicError  always
-  Real flow_with_action(char /*letter*/, ParticleSystem<Real>& /*s*/, const Real& /*h*/) {
-    throw LogicError("motion in the coordinates x and v of a magnetic field has no action");
-  }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) {
     forces_.evaluate(s, true);
     return {kinetic_energy(s), forces_.potential()};
   }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a);
-  void observe(std::optional<Request> wanted) { observing_ = wanted; }
-  const std::optional<Failure>& failure() const { return forces_.failure(); }
-  Evaluations evaluations() const { return forces_.evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const {
     detail::save_signature(saved, prefix + "lines/", options_);
     forces_.save(saved, prefix);
@@ -106,14 +83,16 @@ template <class F, class Real = double> class KSymplectic {
   }
 
  private:
+  using Base = detail::ChargesInFields<F, Real>;
+  using Base::forces_, Base::observing_;
+
   void move_along(int axis, ParticleSystem<Real>& s, const Real& h);
 
-  detail::FieldForces<F, Real> forces_, on_lines_;  ///< at the particles; at the nodes of their lines
+  detail::FieldForces<F, Real> on_lines_;  ///< at the nodes of the lines along which particles move
   KSymplecticOptions options_;
   std::vector<Real> places_, weights_;  ///< in [0, 1]
   ParticleSystem<Real> there_;
   VectorColumn<Real> integrals_{0};
-  std::optional<Request> observing_;
 };
 
 template <class Real> AnyHamiltonian<Real> KSymplecticOptions::split(ForceField<Real> forces) const {

@@ -8,26 +8,9 @@
 
 namespace noether {
 
-namespace detail {
-/// The fields among forces, where they can be told apart; else all.
-template <class F, class Real> F fields_among(const F& forces) {
-  if constexpr (std::is_same_v<F, ForceField<Real>>) {
-    ForceField<Real> fields;
-    for (const AnyForce<Real>& term : forces.terms()) {
-      if (term.claims().gyrates) fields.add(term);
-    }
-    return fields;
-  } else {
-    return forces;
-  }
-}
-}  // namespace detail
-
 template <class F, class Real>
 KSymplectic<F, Real>::KSymplectic(F forces, KSymplecticOptions options)
-    : forces_(forces, "k_symplectic"),
-      on_lines_(detail::fields_among<F, Real>(forces), "k_symplectic"),
-      options_(options) {
+    : Base(forces, "k_symplectic"), on_lines_(fields_among(forces), "k_symplectic"), options_(options) {
   options_.check();
   const GaussNodes gauss = gauss_nodes(static_cast<int>(options_.nodes));
   for (std::size_t k = 0; k < gauss.c.size(); ++k) {
@@ -47,9 +30,7 @@ template <class F, class Real> void KSymplectic<F, Real>::bind(ParticleSystem<Re
 template <class F, class Real> void KSymplectic<F, Real>::flow(char letter, ParticleSystem<Real>& s, const Real& h) {
   if (letter != 'B') return move_along(letter - 'X', s, h);
   forces_.evaluate(s, false);
-  for (Index i = 0; i < s.size(); ++i) {
-    s.shift(i, Vec3<Real>(Vec3<Real>::Zero()), Vec3<Real>(h * forces_.acceleration(i)));
-  }
+  s.advance_velocities(h, forces_.accelerations());
   if (!observing_) forces_.count();
 }
 
@@ -58,9 +39,11 @@ template <class F, class Real> void KSymplectic<F, Real>::move_along(int axis, P
   integrals_.set_zero();
   there_.clock() = s.clock();
   for (std::size_t node = 0; node < places_.size(); ++node) {
+    const Real part = places_[node] * h;
+    if (axis == 2) there_.clock().set_fraction(s.clock().fraction() + part / Real(s.clock().dt()));
     for (Index i = 0; i < s.size(); ++i) {
       Vec3<Real> x = std::as_const(s).positions()[i];
-      x[axis] += places_[node] * h * std::as_const(s).velocities()[i][axis];
+      x[axis] += part * std::as_const(s).velocities()[i][axis];
       there_.positions().set(i, x);
     }
     there_.moved();
@@ -73,7 +56,9 @@ template <class F, class Real> void KSymplectic<F, Real>::move_along(int axis, P
     s.shift(i, way, cross(way, Vec3<Real>(std::as_const(integrals_)[i])));
   }
   s.moved();
-  if (!observing_) forces_.note_move();
+  if (observing_) return;
+  forces_.note_move();
+  forces_.count_beside(options_.nodes);
 }
 
 template <class F, class Real>

@@ -1,6 +1,7 @@
 #include "monitors/charges.hpp"
 
 #include "engine/charge.hpp"
+#include "engine/proper_velocity.hpp"
 #include "engine/sums.hpp"
 #include "monitors/series_report.hpp"
 #include "numbers/suggest.hpp"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace noether {
 
@@ -17,37 +19,52 @@ namespace {
 
 Vec3<double> vector_of(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
-double gamma_of(const ChargeMotion& motion, const Vec3<double>& v) {
+/// Of settled particles, whose velocities may have low words.
+template <class Real> double gamma_of(const ChargeMotion& motion, const ParticleSystem<Real>& s, Index i) {
   if (!motion.c) return 1;
-  const double beta = std::sqrt(norm2(v)) / *motion.c;
-  return 1 / std::sqrt((1 - beta) * (1 + beta));
+  return static_cast<double>(gamma_of_velocity(whole_velocity(s, i), FastNumber<Real>(*motion.c)));
 }
 
-/// What fields and forces do at the places of the particles: accelerations but v x Omega, and Omega.
+/// Charges at the places of some of `s`, at a time: what fields look at.
+template <class Real>
+ParticleSystem<double> charges_at(const ParticleSystem<Real>& s, Index begin, Index end, double time) {
+  ParticleSystem<double> there(s.units());
+  there.add_column<Charge>();
+  for (Index i = begin; i < end; ++i) {
+    there.add("", static_cast<double>(s.masses()[i]), Vec3<Real>(s.positions()[i]).template cast<double>(),
+              Vec3<Real>(s.velocities()[i]).template cast<double>());
+    there.column<Charge>()[i - begin] = static_cast<double>(s.template column<Charge>()[i]);
+  }
+  there.clock() = Clock<double>::free(0);
+  there.clock().set_stage_offset(time);
+  return there;
+}
+
+/// What fields do there: q E/m, Omega = q B/m and, if wanted, q A.
 struct Here {
   VectorColumn<double> acceleration, rate, momentum;
+  std::optional<Failure> failure;
 
   Here(const ChargeMotion& motion, const ParticleSystem<double>& s, bool momenta)
       : acceleration(s.size()), rate(s.size()), momentum(s.size()) {
     ForceSink<double> sink(acceleration, s, {});
     sink.set_gyrations(rate);
     if (momenta) sink.set_field_momenta(momentum);
-    for (const AnyForce<double>& force : motion.forces) {
-      if (!force.claims().gyrates) continue;
-      force.add_to(sink, s);
-    }
-    if (momenta && sink.failure()) throw Error(sink.failure()->message);
+    for (const AnyForce<double>& field : motion.fields) field.add_to(sink, s);
+    failure = sink.failure();
   }
 };
 
-/// The fields among the forces of a run. @throws Error  where there are none
-void expect_fields(const ChargeMotion& motion, const char* monitor) {
-  const auto is_field = [](const AnyForce<double>& force) { return force.claims().gyrates; };
-  if (std::any_of(motion.forces.begin(), motion.forces.end(), is_field)) return;
-  throw Error(
-      fmt::format("monitor '{}' watches charges in fields, but this run has no field; take it out, or add a "
-                  "[[hamiltonian.field]]",
-                  monitor));
+/// @throws Error  where there are no fields, or no charges
+template <class Real>
+void expect_charges_in_fields(const ChargeMotion& motion, const ParticleSystem<Real>& s, const char* monitor) {
+  if (motion.fields.empty()) {
+    throw Error(
+        fmt::format("monitor '{}' watches charges in fields, but this run has no field; take it out, or add a "
+                    "[[hamiltonian.field]]",
+                    monitor));
+  }
+  if (!s.template has<Charge>()) throw Error(fmt::format("monitor '{}' watches charges, but there are none", monitor));
 }
 
 }  // namespace
@@ -58,46 +75,54 @@ void CanonicalMomentum::check() const {
 
 template <class Real> void CanonicalMomentum::check(const ParticleSystem<Real>& s) const {
   check();
-  expect_fields(motion_, "canonical_momentum");
-  static_cast<void>(Here(motion_, s.template as<double>(), true));
+  expect_charges_in_fields(motion_, s, "canonical_momentum");
+  const Here here(motion_, charges_at(s, 0, s.size(), 0), true);
+  if (here.failure) throw Error(here.failure->message);
 }
 template void CanonicalMomentum::check(const ParticleSystem<double>&) const;
 template void CanonicalMomentum::check(const ParticleSystem<Quad>&) const;
 
-std::pair<double, double> CanonicalMomentum::momentum_of(const ParticleSystem<double>& s) const {
-  const Here here(motion_, s, true);
+template <class Real>
+std::optional<CanonicalMomentum::Momentum> CanonicalMomentum::momentum_of(const ParticleSystem<Real>& s,
+                                                                          double time) const {
+  const ParticleSystem<double> there = charges_at(s, 0, s.size(), time);
+  const Here here(motion_, there, true);
+  if (here.failure) return {};
   Vec3<double> n = vector_of(axis);
   n /= std::sqrt(norm2(n));
-  double parts = 0;
-  const double J = sum_over<double>(s.size(), [&](Index i) {
-    const Vec3<double> x = s.positions()[i], v = s.velocities()[i], arm = x - vector_of(center);
-    const Vec3<double> own = gamma_of(motion_, v) * s.masses()[i] * v, of_field = here.momentum[i];
-    const auto along = [&](const Vec3<double>& p) {
-      return symmetry == SpaceSymmetry::rotation ? dot(n, cross<double>(arm, p)) : dot(n, p);
-    };
-    parts += std::abs(along(own)) + std::abs(along(of_field));
-    return along(own) + along(of_field);
-  });
-  return {J, parts};
+  const auto along = [&](Index i, const Vec3<double>& p) {
+    const Vec3<double> arm = Vec3<double>(there.positions()[i]) - vector_of(center);
+    return symmetry == SpaceSymmetry::rotation ? dot(n, cross<double>(arm, p)) : dot(n, p);
+  };
+  const auto own = [&](Index i) {
+    return along(i, gamma_of(motion_, s, i) * there.masses()[i] * Vec3<double>(there.velocities()[i]));
+  };
+  const auto of_field = [&](Index i) { return along(i, std::as_const(here.momentum)[i]); };
+  return Momentum{
+      .sum = sum_over<double>(s.size(), [&](Index i) { return own(i) + of_field(i); }),
+      .parts = sum_over<double>(s.size(), [&](Index i) { return std::abs(own(i)) + std::abs(of_field(i)); })};
 }
 
 template <class Real> void CanonicalMomentum::observe(const Snapshot<Real>& now) {
-  const auto [J, parts] = momentum_of(now.state().template as<double>());
+  const std::optional<Momentum> momentum = momentum_of(now.state(), now.time());
+  last_ = error_ = std::numeric_limits<double>::quiet_NaN();
+  if (!momentum) return;  // the run itself ends where a field is not known
   if (!begun_) {
     begun_ = true;
-    reference_ = J;
-    scale_ = std::max(std::abs(J), 1e-3 * parts);
+    reference_ = momentum->sum;
+    scale_ = std::max(std::abs(reference_), 1e-3 * momentum->parts);
     if (scale_ == 0) scale_ = 1;
     time_unit_ = now.units().is_reduced() ? "1" : fmt::format("1/{}", now.units().time);
   }
-  last_ = J;
-  errors_.add(now.time(), (J - reference_) / scale_);
+  last_ = momentum->sum;
+  error_ = (last_ - reference_) / scale_;
+  errors_.add(now.time(), error_);
 }
 
 std::vector<Series> CanonicalMomentum::series() const {
   const char* dimension = symmetry == SpaceSymmetry::rotation ? "mass length^2/time" : "mass length/time";
   return {{.name = "value", .dimension = dimension, .shape = {}, .values = {last_}},
-          {.name = "relative_error", .dimension = "1", .shape = {}, .values = {errors_.last()}}};
+          {.name = "relative_error", .dimension = "1", .shape = {}, .values = {error_}}};
 }
 
 MonitorReport CanonicalMomentum::report() const {
@@ -109,74 +134,73 @@ MonitorReport CanonicalMomentum::report() const {
   return report;
 }
 
-Index MagneticMoment::charge_of(const ParticleSystem<double>& s) const {
-  if (s.has<Charge>()) {
-    const auto& charges = s.column<Charge>();
-    for (Index i = 0; i < s.size(); ++i) {
-      const bool moves = charges[i] != 0 && s.masses()[i] != 0;
-      if (body.empty() ? !moves : s.name(i) != body) continue;
-      if (moves) return i;
-      throw Error(fmt::format("body = \"{}\" has no charge, so no field turns it; give the name of a charge", body),
-                  {.key = "body"});
-    }
+template <class Real> Index MagneticMoment::charge_of(const ParticleSystem<Real>& s) const {
+  const auto& charges = s.template column<Charge>();
+  for (Index i = 0; i < s.size(); ++i) {
+    const bool moves = charges[i] != Real(0) && s.masses()[i] != Real(0);
+    if (body.empty() ? !moves : s.name(i) != body) continue;
+    if (moves) return i;
+    throw Error(fmt::format("body = \"{}\" has no charge, so no field turns it; give the name of a charge", body),
+                {.key = "body"});
   }
   if (body.empty()) throw Error("no particle has a charge; give one to a body, or take this monitor out");
   throw Error(fmt::format("body = \"{}\" is not a particle{}", body, did_you_mean(body, s.names())), {.key = "body"});
 }
 
 template <class Real> void MagneticMoment::check(const ParticleSystem<Real>& s) const {
-  expect_fields(motion_, "magnetic_moment");
-  static_cast<void>(charge_of(s.template as<double>()));
+  expect_charges_in_fields(motion_, s, "magnetic_moment");
+  static_cast<void>(charge_of(s));
 }
 template void MagneticMoment::check(const ParticleSystem<double>&) const;
 template void MagneticMoment::check(const ParticleSystem<Quad>&) const;
 
-void MagneticMoment::look(ParticleSystem<double> s, Index i) {
-  const Vec3<double> x = std::as_const(s).positions()[i], v = std::as_const(s).velocities()[i];
-  const double gamma = gamma_of(motion_, v);
-  Vec3<double> rate, across = Vec3<double>::Zero();
-  const auto take = [&] {
-    const Here here(motion_, s, false);
-    rate = std::as_const(here.rate)[i];
+template <class Real> bool MagneticMoment::look(const ParticleSystem<Real>& s, Index i, double time) {
+  constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+  value_ = error_ = parallel_ = nothing;
+  center_ = {nothing, nothing, nothing};
+  ParticleSystem<double> one = charges_at(s, i, i + 1, time);
+  const Vec3<double> x = std::as_const(one).positions()[0], v = std::as_const(one).velocities()[0];
+  const double mass = one.masses()[0], charge = one.column<Charge>()[0], gamma = gamma_of(motion_, s, i);
+  Vec3<double> X = x, across = v, rate = v;
+  const int sweeps = at == MomentPlace::particle ? 1 : 4;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    one.positions().set(0, X);
+    one.moved();
+    const Here here(motion_, one, false);
+    rate = here.rate[0];
     const double rate2 = norm2(rate);
-    const Vec3<double> drift = cross<double>(std::as_const(here.acceleration)[i], rate) / rate2, w = v - drift;
+    if (here.failure || !(rate2 > 0)) return false;
+    const Vec3<double> w = v - cross<double>(here.acceleration[0], rate) / rate2;  // without the drift E x B/B^2
     across = w - dot(w, rate) / rate2 * rate;
-    return Vec3<double>(x + gamma * cross<double>(across, rate) / rate2);
-  };
-  Vec3<double> X = take();
-  for (int sweep = 0; sweep < 3; ++sweep) {
-    if (at == MomentPlace::particle && sweep > 0) break;
-    if (at == MomentPlace::gyrocenter) {
-      s.positions().set(i, X);
-      s.moved();
-    }
-    X = take();
+    X = x + gamma * cross<double>(across, rate) / rate2;
   }
-  const double charge = s.column<Charge>()[i], strength = std::sqrt(norm2(rate)) * s.masses()[i] / std::abs(charge);
-  value_ = gamma * gamma * s.masses()[i] * norm2(across) / (2 * strength);
+  const double omega = std::sqrt(norm2(rate)), strength = omega * mass / std::abs(charge);
+  value_ = gamma * gamma * mass * norm2(across) / (2 * strength);
   center_ = {X[0], X[1], X[2]};
-  parallel_ = dot(v, rate) / std::sqrt(norm2(rate)) * (charge < 0 ? -1 : 1);
+  parallel_ = dot(v, rate) / omega * (charge < 0 ? -1 : 1);
+  return std::isfinite(value_);
 }
 
 template <class Real> void MagneticMoment::observe(const Snapshot<Real>& now) {
   const double before = parallel_, then = time_;
-  const ParticleSystem<double> s = now.state().template as<double>();
-  look(s, charge_of(s));
+  const ParticleSystem<Real>& s = now.state();
   time_ = now.time();
+  time_unit_ = now.units().is_reduced() ? "1" : fmt::format("1/{}", now.units().time);
+  unit_ = now.units().is_reduced() ? "" : std::string(now.units().time);
+  if (!look(s, charge_of(s), time_)) return;
   if (!begun_) {
     begun_ = true;
     reference_ = least_ = most_ = value_;
     start_ = center_;
     began_at_ = time_;
-    time_unit_ = now.units().is_reduced() ? "1" : fmt::format("1/{}", now.units().time);
-    unit_ = now.units().time == std::string_view("1") ? "" : std::string(now.units().time);
   } else if (before * parallel_ < 0) {
     last_turn_ = then + (time_ - then) * before / (before - parallel_);
     if (turns_++ == 0) first_turn_ = last_turn_;
   }
   least_ = std::min(least_, value_);
   most_ = std::max(most_, value_);
-  errors_.add(now.time(), (value_ - reference_) / (reference_ > 0 ? reference_ : 1));
+  error_ = (value_ - reference_) / (reference_ > 0 ? reference_ : 1);
+  errors_.add(time_, error_);
 }
 
 std::array<double, 3> MagneticMoment::drift() const {
@@ -194,12 +218,15 @@ std::vector<Series> MagneticMoment::series() const {
   return {{"value", "energy charge time/mass", {}, {value_}},
           {"center", "length", {3}, {center_[0], center_[1], center_[2]}},
           {"parallel", "length/time", {}, {parallel_}},
-          {"relative_error", "1", {}, {errors_.last()}}};
+          {"relative_error", "1", {}, {error_}}};
 }
 
 MonitorReport MagneticMoment::report() const {
   MonitorReport report = report_of(errors_, time_unit_);
-  if (!begun_) return report;
+  if (!begun_) {
+    report.note = "no magnetic field turned the charge where it was looked at";
+    return report;
+  }
   report.first = reference_;
   report.last = value_;
   report.scale = reference_;

@@ -16,8 +16,8 @@ namespace noether {
 
 /// In what charges move; scenes give it to the monitors that ask for it.
 struct ChargeMotion {
-  std::vector<AnyForce<double>> forces;  ///< the fields among them tell B and A
-  std::optional<double> c = {};          ///< speed of light, where particles are relativistic [length/time]
+  std::vector<AnyForce<double>> fields;
+  std::optional<double> c = {};  ///< speed of light, where particles are relativistic [length/time]
 };
 
 /// A symmetry of space.
@@ -67,21 +67,24 @@ class CanonicalMomentum {
   double last() const { return last_; }
 
  private:
-  /// J, and the sum of the sizes of its terms.
-  std::pair<double, double> momentum_of(const ParticleSystem<double>& s) const;
+  struct Momentum {
+    double sum = 0, parts = 0;  ///< J, and the sum of the sizes of its terms
+  };
+  /// Empty where a field cannot be told.
+  template <class Real> std::optional<Momentum> momentum_of(const ParticleSystem<Real>& s, double time) const;
 
   ChargeMotion motion_;
   bool begun_ = false;
-  double reference_ = 0, scale_ = 0, last_ = 0;
+  double reference_ = 0, scale_ = 0, last_ = 0, error_ = 0;
   SeriesStatistics errors_;
   std::string time_unit_;
 };
 
 /// Where the magnetic moment is taken.
-enum class MomentPlace : std::uint8_t { gyrocenter, particle };
+enum class MomentPlace : std::uint8_t { gyrocentre, particle };
 template <> struct EnumNames<MomentPlace> {
   static constexpr std::array<std::pair<MomentPlace, std::string_view>, 2> values = {
-      {{MomentPlace::gyrocenter, "gyrocentre"}, {MomentPlace::particle, "particle"}}};
+      {{MomentPlace::gyrocentre, "gyrocentre"}, {MomentPlace::particle, "particle"}}};
 };
 
 /// Watches one charge: its magnetic moment, the centre about which it gyrates, and where it turns back.
@@ -91,12 +94,14 @@ template <> struct EnumNames<MomentPlace> {
 /// B is that of the gyrocentre (three sweeps), where mu is an adiabatic invariant to the next order, or of the place of
 /// the particle, where it swings with every gyration. Turning points are those where v . B changes its sign between two
 /// looks.
-/// @cost four evaluations of the fields
+/// Where no magnetic field is, or the field is not known, there is nothing to tell, and the statistics leave the look
+/// out.
+/// @cost four evaluations of the fields at one place
 /// @source Northrop1963
 class MagneticMoment {
  public:
   std::string body = {};  ///< its name; default: the first charge
-  MomentPlace at = MomentPlace::gyrocenter;
+  MomentPlace at = MomentPlace::gyrocentre;
 
   static constexpr auto describe() {
     return part<MagneticMoment>(
@@ -133,12 +138,13 @@ class MagneticMoment {
   double worst() const { return errors_.worst(); }
 
  private:
-  Index charge_of(const ParticleSystem<double>& s) const;
-  void look(ParticleSystem<double> s, Index i);
+  template <class Real> Index charge_of(const ParticleSystem<Real>& s) const;
+  /// Sets what is shown; NaN where the field is unknown or no field turns the charge. @return whether it is known
+  template <class Real> bool look(const ParticleSystem<Real>& s, Index i, double time);
 
   ChargeMotion motion_;
   bool begun_ = false;
-  double value_ = 0, reference_ = 0, least_ = 0, most_ = 0, parallel_ = 0, time_ = 0, began_at_ = 0;
+  double value_ = 0, error_ = 0, reference_ = 0, least_ = 0, most_ = 0, parallel_ = 0, time_ = 0, began_at_ = 0;
   std::array<double, 3> center_{}, start_{};
   std::int64_t turns_ = 0;
   double first_turn_ = 0, last_turn_ = 0;

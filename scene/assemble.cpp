@@ -23,7 +23,7 @@ constexpr std::int64_t once = std::int64_t{1} << 62;
 
 void attach_monitors(Simulation<double>& sim, const Scene& scene) {
   Watched watched{constraints_of(scene), scene.system ? scene.system->symmetries : std::vector<Symmetry>(), {}};
-  watched.charges = {forces_of(scene).terms(), scene.hamiltonian.splitting.c};
+  watched.charges = {fields_among(forces_of(scene)).terms(), scene.hamiltonian.splitting.c};
   for (const SceneWatch& watch : scene.watches) {
     if (watch.kind == SceneWatch::Kind::monitor) {
       detail::attach(sim, watch.cadence, watch.monitor.make(watched));

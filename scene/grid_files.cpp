@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -57,8 +59,8 @@ void read_files(GridField& field, TableReader& reader) {
   } catch (const Error& error) {
     reader.fail("file", fmt::format("{} is not a field on a grid: {}", field.file, error.message()));
   }
-  const double divergence = field.divergence();
-  if (divergence > 0 && reader.context().notes != nullptr) {
+  if (reader.context().notes == nullptr || field.grid->B.empty()) return;
+  if (const double divergence = field.divergence(); divergence > 0) {
     reader.context().notes->push_back(fmt::format(
         "{} has B alone: between its places div B is up to {:.1e} of |B| over a spacing; with A it would be 0",
         field.file, divergence));

@@ -18,9 +18,9 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
   MinimizeOptions options;
   read_part(reader, options);
   if (!scene.hamiltonian.splitting.claims().inertial) {
-    reader.fail(
-        nullptr, "",
-        fmt::format("planets of {} have no minimum to move to; take [minimize] out", scene.hamiltonian.splitting.name));
+    reader.fail(nullptr, "",
+                fmt::format("particles of {} have no minimum to move to; take [minimize] out",
+                            scene.hamiltonian.splitting.name));
   }
   if (!scene.hamiltonian.splitting.only_forces) {
     reader.fail(nullptr, "",

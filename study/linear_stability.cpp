@@ -144,6 +144,12 @@ bool has_action_mode(const Scene& scene, const MethodChoice& choice, const std::
   return lambda.imag() != 0 || (lambda.real() < 0 && scene.system && scene.system->field()->claims().dissipative);
 }
 
+/// Whether nothing but drifts and kicks, or rates, moves a scene.
+bool drifts_and_kicks(const Scene& scene) {
+  const SceneSplitting& splitting = scene.hamiltonian.splitting;
+  return scene.system || (splitting.only_forces && splitting.own.empty() && !splitting.claims().velocity_forces);
+}
+
 StepMatrix classical_step(const MethodChoice& choice, const Mode& mode) {
   const double scale = mode.scale();
   std::unique_ptr<VectorField<double>> field;
@@ -304,9 +310,7 @@ int LinearTheory::resonance_at(double z) const {
 
 std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, const Mode& mode) {
   // Of a splitting of its own nobody knows what it makes of a mode.
-  const SceneSplitting& splitting = scene.hamiltonian.splitting;
-  const bool drifts = scene.system || who.joined ||
-                      (splitting.only_forces && splitting.own.empty() && !splitting.claims().velocity_forces);
+  const bool drifts = who.joined || drifts_and_kicks(scene);
   if (!(mode.scale() > 0) || !drifts || !scene.integrator.decorators.empty()) return {};
   const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
   if (made.integrator.classical) {
@@ -334,9 +338,8 @@ std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, 
 
 bool first_step_fails(const Scene& scene, const Candidate& who, const Mode& mode, double z) {
   // Its coupling is a frequency: the mode must have that of the scene.
-  const SceneSplitting& splitting = scene.hamiltonian.splitting;
-  const bool plain = scene.system || (splitting.only_forces && splitting.own.empty());
-  if (std::abs(mode.scale() - 1) > 1e-12 || mode.rate > 0 || !plain || !scene.integrator.decorators.empty())
+  if (std::abs(mode.scale() - 1) > 1e-12 || mode.rate > 0 || !drifts_and_kicks(scene) ||
+      !scene.integrator.decorators.empty())
     return false;
   const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
   if (!made.integrator.classical || !remembers(*made.integrator.classical->info)) return false;

@@ -21,7 +21,7 @@ namespace {
 
 const Tokamak tokamak{.B0 = 1, .R0 = 1, .safety = 2};
 constexpr double step = 0.3141592653589793;  // a twentieth of a gyration where B = 1
-const ChargeMotion motion{.forces = {AnyForce<double>(InField(tokamak))}, .c = {}};
+const ChargeMotion motion{.fields = {AnyForce<double>(InField(tokamak))}, .c = {}};
 
 ParticleSystem<double> ion() {
   ParticleSystem<double> s;

@@ -37,7 +37,7 @@ int main() {
                  compose(ChargedParticles(dipole, {.relativistic = Relativistic::higuera_cary}), schemes::verlet_aba),
                  2e-3);
   MagneticMoment moment;
-  moment.watch({.forces = {AnyForce<double>(InField(dipole))}, .c = light});
+  moment.watch({.fields = {AnyForce<double>(InField(dipole))}, .c = light});
   auto& energy = sim.every(10, Energy{});
   auto& mu = sim.every(5, moment);
   sim.every(5, io::TrajectoryWriter{"run.h5"});

@@ -54,6 +54,7 @@ TEST_CASE("bodies that touch end the run, and say who", "[extremes][bodies]") {
   Simulation sim(s, compose(turning(pull(Figure::sites)), schemes::verlet), 0.01);
   const Outcome outcome = sim.run(10);
   CHECK_FALSE(outcome.ok());
+  CHECK_THAT(to_text(outcome), Catch::Contains("of a is not finite"));
 }
 
 TEST_CASE("a spin of any size neither loses nor gains", "[extremes][bodies]") {

@@ -119,7 +119,7 @@ TEST_CASE("a banana on a grid: its energy to rounding, its canonical momentum bo
   FieldGrid values = FieldGrid::of(Tokamak{}, {n, n, 17}, {-1.3, -1.3, -0.2}, {2.6 / 60, 2.6 / 60, 0.4 / 16});
   for (double& value : values.A) value = std::isfinite(value) ? value : 0;  // on the axis, where nothing comes
   const GridField grid{.file = "", .grid = std::make_shared<const FieldGrid>(std::move(values))};
-  const ChargeMotion motion{.forces = {AnyForce<double>(InField(grid))}, .c = {}};
+  const ChargeMotion motion{.fields = {AnyForce<double>(InField(grid))}, .c = {}};
   CanonicalMomentum around;
   around.watch(motion);
   const auto by = [](auto field) {
@@ -145,6 +145,35 @@ TEST_CASE("a charge that leaves the grid ends the run by name", "[forces][grid_f
   CHECK(std::abs(sim.particles().positions()[0][0] - 1) <= 0.03);
 }
 
+TEST_CASE("monitors over a grid: beyond its places, and where it has no field", "[forces][grid_field]") {
+  const GridField grid = grid_of(UniformElectromagnetic{.E = {1, 0, 0}, .B = {0, 0, 1e-3}}, 9, -2, 2);
+  const ChargeMotion motion{.fields = {AnyForce<double>(InField(grid))}, .c = {}};
+  Simulation sim(test::one_charge({0, 0, 0}, {2.1, 0, 0}), compose(test::in_field(grid), schemes::verlet_aba), 0.2);
+  CanonicalMomentum around;
+  MagneticMoment moment;
+  around.watch(motion);
+  moment.watch(motion);
+  auto& p = sim.every(1, around);
+  auto& mu = sim.every(1, moment);
+  const Outcome outcome = sim.run(100);
+  CHECK(outcome.kind == Outcome::Kind::solver_failure);  // the run ends as without them, and they have reports
+  CHECK(p.report().samples > 0);
+  CHECK(mu.report().samples == 0);  // its gyrocenter is far out
+  // No field at all: the gyrocenter is nowhere, and nothing is read there.
+  const GridField none = grid_of(UniformElectromagnetic{}, 9, -2, 2);
+  FieldValues<double> values;
+  none.at(0.0, Vec3<double>(std::nan(""), 0, 0), values);
+  CHECK_FALSE(none.covers({std::nan(""), 0, 0}));
+  Simulation still(test::one_charge({0, 0, 0}, {0.1, 0, 0}), compose(test::in_field(none), schemes::verlet_aba), 0.1);
+  MagneticMoment of_none;
+  of_none.watch({.fields = {AnyForce<double>(InField(none))}, .c = {}});
+  still.every(1, of_none);
+  CHECK(still.run(5).ok());
+  CHECK_THROWS_WITH(Simulation(test::one_charge({0, 0, 0}, {0, 0, 0}),
+                               compose(test::in_field(GridField{}), schemes::verlet_aba), 0.1),
+                    Catch::Contains("has no grid"));
+}
+
 TEST_CASE("grids whose shapes do not fit are refused", "[forces][grid_field]") {
   FieldGrid grid;
   grid.counts = {6, 6, 6};
@@ -153,6 +182,9 @@ TEST_CASE("grids whose shapes do not fit are refused", "[forces][grid_field]") {
   grid.B = grid.A;
   CHECK_THROWS_WITH(grid.check(), Catch::Contains("either A or B"));
   grid.A.clear();
+  grid.B.clear();
+  CHECK_THROWS_WITH(grid.check(), Catch::Contains("no values"));
+  grid.B.assign(648, 0.0);
   grid.phi = {1};
   CHECK_THROWS_WITH(grid.check(), Catch::Contains("numbers"));
   grid.phi.clear();

@@ -5,6 +5,7 @@
 #include "forces/gravity.hpp"
 #include "integrators/all_schemes.hpp"
 #include "integrators/classical.hpp"
+#include "integrators/damped.hpp"
 #include "monitors/charges.hpp"
 #include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
@@ -173,7 +174,7 @@ TEST_CASE("energies in a ring field are bounded for 20 000 steps by Boris, and n
 TEST_CASE("a tokamak banana: energy to rounding, canonical momentum bounded, where it turns",
           "[integrators][charges]") {
   // 3000 steps of pi/10: mu swings at the particle, and ten times less at the gyrocentre.
-  const ChargeMotion motion{.forces = {AnyForce<double>(InField(Tokamak{}))}, .c = {}};
+  const ChargeMotion motion{.fields = {AnyForce<double>(InField(Tokamak{}))}, .c = {}};
   CanonicalMomentum around;
   around.watch(motion);
   MagneticMoment at_center, at_particle;
@@ -204,7 +205,7 @@ TEST_CASE("1e5 gyrations of a banana", "[integrators][charges][nightly]") {
   Simulation sim(one_charge(banana_x, banana_v),
                  compose(in_field(Tokamak{}, {.rotation = Rotation::boris}), schemes::verlet_aba), pi / 10);
   CanonicalMomentum around;
-  around.watch({.forces = {AnyForce<double>(InField(Tokamak{}))}, .c = {}});
+  around.watch({.fields = {AnyForce<double>(InField(Tokamak{}))}, .c = {}});
   auto& energy = sim.every(1, Energy{});
   double least = 10, most = 0;
   std::array<double, 2> tenths{};
@@ -233,7 +234,7 @@ TEST_CASE("a dipole holds a charge between its mirror points", "[integrators][ch
   Simulation sim(one_charge({5, 0, 0}, {0, 0.6, 0.8}),
                  compose(in_field(dipole, {.rotation = Rotation::boris}), schemes::verlet_aba), 0.02);
   MagneticMoment moment;
-  moment.watch({.forces = {AnyForce<double>(InField(dipole))}, .c = {}});
+  moment.watch({.fields = {AnyForce<double>(InField(dipole))}, .c = {}});
   auto& energy = sim.every(1, Energy{});
   auto& mu = sim.every(1, moment);
   double highest = 0;
@@ -280,6 +281,57 @@ TEST_CASE("relativistic charges: gyration, force-free fields, energies, digits a
   CHECK_THROWS_WITH(Simulation(one_charge({0, 0, 0}, {0, 0, 0}),
                                compose(in_field(free, {.relativistic = Relativistic::vay}), schemes::verlet_aba), 1),
                     Catch::Contains("speed of light"));
+}
+
+TEST_CASE("monitors see fields at the time of the look, and gamma to all digits", "[integrators][charges]") {
+  // Along E0 nothing changes in space: m v + q A is kept, with A of each moment.
+  const PlaneWave wave{.E0 = {0.3, 0, 0}, .direction = {0, 0, 1}, .omega = 3, .c = 2};
+  const auto worst = [&](double h) {
+    Simulation sim(one_charge({0.1, 0, 0}, {0.1, 0.2, 0}), compose(in_field(wave), schemes::verlet_aba), h);
+    CanonicalMomentum along;
+    along.axis = {1, 0, 0};
+    along.symmetry = SpaceSymmetry::translation;
+    along.watch({.fields = {AnyForce<double>(InField(wave))}, .c = {}});
+    auto& p = sim.every(1, along);
+    REQUIRE(sim.run_until(4).ok());
+    return p.worst() * *p.scale();
+  };
+  CHECK(std::abs(std::log2(worst(0.02) / worst(0.01)) - 2) <= 0.1);
+  CHECK(worst(0.01) < 1e-4);
+  // gamma = 1e6 in a uniform field: what is kept is kept to rounding.
+  const UniformElectromagnetic field{.B = {0, 0, 1e3}};
+  const ChargeMotion motion{.fields = {AnyForce<double>(InField(field))}, .c = 1.0};
+  Simulation fast(one_charge({0, 0, 0}, {0.9999999999995, 0, 0}),
+                  compose(in_field(field, {.relativistic = Relativistic::higuera_cary, .c = 1.0}), schemes::verlet_aba),
+                  1);
+  CanonicalMomentum around;
+  around.center = {0, -1e3, 0};  // where it gyrates about: u/(q B) = 1e3
+  MagneticMoment moment;
+  around.watch(motion);
+  moment.watch(motion);
+  auto& J = fast.every(10, around);
+  auto& mu = fast.every(10, moment);
+  REQUIRE(fast.run(1000).ok());
+  CHECK(mu.worst() < 1e-12);
+  CHECK(J.worst() < 1e-6);
+}
+
+TEST_CASE("where no magnetic field is there is no magnetic moment to tell", "[integrators][charges]") {
+  const UniformElectromagnetic electric{.E = {1, 0, 0}};
+  Simulation sim(one_charge({0, 0, 0}, {0, 0, 0}), compose(in_field(electric), schemes::verlet_aba), 0.1);
+  MagneticMoment moment;
+  moment.watch({.fields = {AnyForce<double>(InField(electric))}, .c = {}});
+  auto& mu = sim.every(1, moment);
+  REQUIRE(sim.run(20).ok());
+  CHECK(mu.report().samples == 0);
+  CHECK_THAT(mu.report().note, Catch::Contains("no magnetic field"));
+}
+
+TEST_CASE("what relativistic charges do not keep, or cannot have beside them, is said", "[integrators][charges]") {
+  const AnyHamiltonian<double> fast = in_field(UniformElectromagnetic{}, {.relativistic = Relativistic::vay, .c = 1.0});
+  CHECK_FALSE(fast.claims().keeps_momentum);
+  CHECK_FALSE(fast.claims().keeps_angular_momentum);
+  CHECK_THROWS_WITH(Damped<AnyHamiltonian<double>>(fast, LinearDrag{0.1}), Catch::Contains("u = gamma v"));
 }
 
 TEST_CASE("relativistic motion in a constant electric field is a hyperbola", "[integrators][charges]") {

@@ -103,6 +103,35 @@ TEST_CASE("energies in a ring field, first and last tenth of 20 000 steps", "[in
   CHECK(std::abs(fourth[1] / 8.6652e-4 - 1) <= 0.02);
 }
 
+TEST_CASE("fields that depend on time: compositions keep their order, and nodes are counted",
+          "[integrators][charges]") {
+  const PlaneWave wave{.E0 = {0.6, 0, 0}, .direction = {0, 0, 1}, .omega = 2, .c = 1};
+  const auto end = [&](const AnyIntegrator<Quad>& by, double h) {
+    Simulation<Quad> sim(test::one_charge<Quad>({0.1, 0, 0.2}, {0.1, 0.2, 0.4}), by, Clock<Quad>::fixed(0, h));
+    REQUIRE(sim.run_until(4).ok());
+    return Vec3<Quad>(sim.particles().positions()[0]);
+  };
+  const auto lines = [&](const char* scheme) {
+    return AnyIntegrator<Quad>(compose(AnyHamiltonian<Quad>(KSymplectic<ForceField<Quad>, Quad>(forces_of<Quad>(wave))),
+                                       *schemes::find(scheme)));
+  };
+  const AnyIntegrator<Quad> turns =
+      compose(AnyHamiltonian<Quad>(ChargedParticles<ForceField<Quad>, Quad>(forces_of<Quad>(wave))),
+              *schemes::find("kahan_li_8_s17"));
+  const Vec3<Quad> exact = end(turns, 0.02);
+  for (const auto& [scheme, order] : {std::pair{"verlet", 2.0}, std::pair{"yoshida_4", 4.0}}) {
+    CAPTURE(scheme);
+    const auto error = [&](double h) { return static_cast<double>((end(lines(scheme), h) - exact).norm()); };
+    CHECK(std::abs(std::log2(error(0.1) / error(0.05)) - order) <= 0.2);
+  }
+  const AnyHamiltonian<double> h = KSymplectic<ForceField<double>>(forces_of<double>(wave));
+  Simulation sim(test::one_charge(ring_x, ring_v), compose(h, schemes::verlet), 0.1);
+  REQUIRE(sim.run(10).ok());
+  const std::int64_t before = sim.evaluations().force;
+  REQUIRE(sim.run(100).ok());
+  CHECK(sim.evaluations().force - before == 100 * (5 * 8 + 1));  // X is joined to that of the next step
+}
+
 TEST_CASE("what is no word over its letters is refused", "[integrators][charges]") {
   const AnyHamiltonian<double> h = KSymplectic<ForceField<double>>(forces_of<double>(Tokamak{}));
   CHECK_THROWS_AS(compose(h, schemes::verlet_aba), SchemeMismatch);

@@ -1,6 +1,7 @@
 /// Rigid bodies under forces: tops against references of 28 digits, orders, what is kept and what is refused.
 
 #include "integrators/rotating.hpp"
+#include "integrators/wisdom_holman.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/shadow_hamiltonian.hpp"
 #include "tests/support/catch.hpp"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace noether {
 namespace {
@@ -122,6 +124,18 @@ TEST_CASE("the shadow of a top is flatter with every order, by both rotors", "[i
     CHECK(std::abs(shadow.fluctuation(1) * scale / wanted.eight - 1) < 0.1);
     CHECK(std::abs(shadow.fluctuation(2) * scale / wanted.twelve - 1) < 0.2);
     CHECK(shadow.verdict().starts_with("kept"));
+    // The energy itself, at every step.
+    Simulation plain(heavy_top(), compose(turning(weight_on_sites(), {.rotor = rotor}), schemes::verlet), wanted.h);
+    auto& energy = plain.every(1, Energy{});
+    std::vector<double> values;
+    for (long k = std::lround(10 / wanted.h); k > 0; --k) {
+      REQUIRE(plain.run(1).ok());
+      values.push_back(*energy.report().last);
+    }
+    double mean = 0, square = 0;
+    for (const double value : values) mean += value / static_cast<double>(values.size());
+    for (const double value : values) square += (value - mean) * (value - mean) / static_cast<double>(values.size());
+    CHECK(std::abs(std::sqrt(square) / wanted.energy - 1) < 0.1);
   };
   check(Rotor::axes, {0.2, 3.48e-3, 1.42e-4, 3.76e-7, 5.63e-9});
   check(Rotor::axes, {0.1, 8.72e-4, 9.03e-6, 1.54e-9, 1.56e-12});
@@ -192,6 +206,13 @@ TEST_CASE("the shadow finds a torque that is not the slope of its energy, and a 
   CHECK(verdict(turning(weighing(1))).starts_with("kept"));
   CHECK_FALSE(verdict(turning(weighing(0.9))).starts_with("kept"));
   CHECK_FALSE(verdict(WithoutThirdAxis(KineticPotential<ForceField<double>>(weighing(1)))).starts_with("kept"));
+}
+
+TEST_CASE("a body that a fixed point holds is refused on Kepler arcs", "[integrators][rotating]") {
+  ParticleSystem<double> s = heavy_top();
+  CHECK_THROWS_WITH(
+      Simulation(s, compose(Rotating<WisdomHolman<double>>(WisdomHolman<double>({})), schemes::verlet), 0.1),
+      Catch::Contains("cannot be on a Kepler arc"));
 }
 
 TEST_CASE("free bodies keep their angular momentum to the bit and their energy to rounding",
