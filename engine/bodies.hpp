@@ -158,6 +158,12 @@ Vec3<Real> angular_velocity(const Quaternion<Real>& q, const Vec3<Real>& spin, c
 template <class Real> int turning_freedoms(const Vec3<Real>& inertia) {
   return (inertia[0] > Real(0) ? 1 : 0) + (inertia[1] > Real(0) ? 1 : 0) + (inertia[2] > Real(0) ? 1 : 0);
 }
+/// Whether particle `i` has three equal moments of inertia, or, as a point, none: nothing turns it by its moments.
+template <class Real> bool is_sphere(const ParticleSystem<Real>& s, Index i) {
+  if (!has_bodies(s)) return true;
+  const Vec3<Real> inertia = s.template column<BodyInertia>()[i];
+  return inertia[0] == inertia[1] && inertia[1] == inertia[2];
+}
 /// Those of all particles together, less the places of bodies that a fixed point holds.
 template <class Real> int turning_freedoms(const ParticleSystem<Real>& s) {
   if (!has_bodies(s)) return 0;

@@ -232,6 +232,8 @@ struct ForceClaims {
   bool periodic = false;                ///< it knows periodic boxes
   bool sets = false;                    ///< alone, in lanes, it can write accelerations instead of adding to them
   bool kepler = false;                  ///< two bodies under it alone move on Kepler orbits
+  bool fixed_figure = false;            ///< it gives particle 0 a figure that stays where it is: no torque
+  bool turning_figures = false;         ///< it has the second degree of rigid bodies, at least of particle 0
   std::optional<double> G = {};         ///< of `kepler` [length^3/mass/time^2]; default: the unit system's own
   double softening = 0;                 ///< of `kepler` [length]
   bool bonded = false;                  ///< it acts on the bonds, angles and dihedrals of the structure

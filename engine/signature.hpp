@@ -47,8 +47,15 @@ template <class T> std::string signature_of(const T& value) {
     return value.signature();
   } else if constexpr (requires { T::describe(); }) {
     std::string fields;
-    for_each_field<T>(
-        [&](const auto& field) { add_field_text(fields, field.name, value_text(value.*(field.member))); });
+    for_each_field<T>([&](const auto& field) {
+      const auto& given = value.*(field.member);
+      using Plain = typename optional_value<std::decay_t<decltype(given)>>::type;
+      if constexpr (std::is_enum_v<Plain> && !std::is_same_v<Plain, std::decay_t<decltype(given)>>) {
+        if (given) add_field_text(fields, field.name, value_text(*given));  // runs from before there was a choice go on
+      } else {
+        add_field_text(fields, field.name, value_text(given));
+      }
+    });
     if constexpr (requires { value.tied.front()[0]; }) {
       fields += fields.empty() ? "tied = [" : ", tied = [";
       for (const auto& particles : value.tied) fields += fmt::format("[{}]", fmt::join(particles, " "));

@@ -58,18 +58,20 @@ struct GravityOfBodies {
   template <class Real> void check(const ParticleSystem<Real>& s) const {
     check_bodies(s.bodies());
     if (degree != Figure::sites || !has_bodies(s)) return;
-    const auto& inertia = s.template column<BodyInertia>();
     for (Index i = 0; i < s.size(); ++i) {
       const BodyKind* kind = s.bodies()->kind(i);
-      const Vec3<Real> moments = inertia[i];
-      const bool sphere = moments[0] == moments[1] && moments[1] == moments[2];
-      if (kind != nullptr && kind->sites.size() == 1 && !sphere) refuse_one_site(s.name(i));
+      if (kind != nullptr && kind->sites.size() == 1 && !is_sphere(s, i)) refuse_one_site(s.name(i));
     }
   }
 
   /// Far from each other bodies go on Kepler orbits.
   ForceClaims claims() const {
-    return {.kepler = point_masses, .G = G, .on_bodies = true, .charges = false, .exclusions = false};
+    return {.kepler = point_masses,
+            .turning_figures = true,
+            .G = G,
+            .on_bodies = true,
+            .charges = false,
+            .exclusions = false};
   }
 
   /// For double, Quad, eight systems side by side, and dual numbers.

@@ -1,5 +1,6 @@
 #include "forces/on_sites.hpp"
 
+#include "forces/primary.hpp"
 #include "neighbors/neighbor_list.hpp"
 #include "numbers/cost_book.hpp"
 
@@ -19,6 +20,10 @@ template <class Real> struct Expanded {
 }  // namespace
 
 template <class Real> void OnSites<Real>::check_pairs(const ParticleSystem<Real>& s) const {
+  for (const AnyForce<Real>& force : forces_.terms()) {
+    if (force.claims().fixed_figure && s.bodies()->kind(0) != nullptr)
+      detail::refuse_fixed_axis(force.name(), s.name(0));
+  }
   const auto& kinds = s.bodies()->kinds;
   if (std::none_of(kinds.begin(), kinds.end(), [](const BodyKind& kind) { return kind.sites.size() > 1; })) return;
   for (const AnyForce<Real>& force : forces_.terms()) {

@@ -25,12 +25,13 @@ template <class Real> class OnSites {
   std::string signature() const { return "on_sites(" + forces_.signature() + ")"; }
   ForceClaims claims() const {
     ForceClaims claims = forces_.claims();
-    claims.sets = claims.kepler = false;
+    claims.sets = claims.kepler = claims.fixed_figure = false;
     claims.on_bodies = true;
     claims.range = 0;  // of centres: sites have a list of their own
     return claims;
   }
-  /// @throws Error  for a force between particles that does not leave out pairs within a body, though there are such
+  /// @throws Error  for a force between particles that does not leave out pairs within a body, though there are such,
+  /// and for one that gives particle 0 a figure that does not turn, though that is a body
   template <class Number> void check(const ParticleSystem<Number>& s) const {
     if constexpr (std::is_same_v<Number, Real>) {
       check_pairs(s);

@@ -10,6 +10,15 @@
 
 namespace noether {
 
+namespace detail {
+/// @throws Error  always: an axis that stays where it is gives a body no torque
+[[noreturn]] inline void refuse_fixed_axis(const std::string& force, const std::string& body) {
+  throw Error(force + " has an axis that is fixed in space, which gives '" + body +
+                  "' no torque, but that is a rigid body, which turns; give frame = \"body\", or a plain body",
+              {.key = "frame"});
+}
+}  // namespace detail
+
 /// The particle that a part is about: particle 0 of the run, known by its id from the first look on, so that no other
 /// one takes its place when it is taken out.
 class Primary {

@@ -35,6 +35,8 @@ inline void merge(ForceClaims& all, const ForceClaims& one) {
     all.G = one.G;
     all.softening = std::max(all.softening, one.softening);
   }
+  all.fixed_figure = all.fixed_figure || one.fixed_figure;
+  all.turning_figures = all.turning_figures || one.turning_figures;
   all.bonded = all.bonded || one.bonded;
   all.meshed = all.meshed || one.meshed;
   all.on_bodies = all.on_bodies || one.on_bodies;

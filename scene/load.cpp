@@ -329,7 +329,7 @@ class SceneReader {
     SceneForce force = noether::read_force(reader, *kind, &scene_.particles, effective);
     check_force_beside(reader, *kind, force, scene_.hamiltonian, parts_);
     set_kick(reader, force);
-    if (scene_.hamiltonian.rotating) check_force_on_bodies(reader, *kind, force);
+    if (scene_.hamiltonian.rotating) check_force_on_bodies(reader, *kind, force, scene_.hamiltonian, scene_.particles);
     try {
       (force.letter ? force.force : scene_.hamiltonian.on_bodies(force.force)).check(scene_.particles);
     } catch (const Error& error) {

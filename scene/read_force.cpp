@@ -1,5 +1,6 @@
 #include "scene/read_force.hpp"
 
+#include "engine/bodies.hpp"
 #include "scene/read_tied.hpp"
 
 #include <fmt/format.h>
@@ -117,8 +118,17 @@ void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind,
   }
 }
 
-void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force) {
+void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
+                           const SceneHamiltonian& made, const ParticleSystem<double>& s) {
   const ForceClaims claims = force.force.claims();
+  if (claims.turning_figures && s.size() > 0 && !is_sphere(s, 0)) {
+    for (const SceneForce& other : made.forces) {
+      if (!other.force.claims().turning_figures) continue;
+      reader.fail("type", fmt::format("{} and {} both have the second degree of the figure of '{}', whose moments of "
+                                      "inertia differ, so it would act twice; take that of one of them out",
+                                      other.name, kind.info.name, s.name(0)));
+    }
+  }
   if (claims.on_bodies) return;
   if (force.letter) {
     reader.fail("type", fmt::format("{} slows the velocities of points alone, but some particles are rigid bodies; "

@@ -22,8 +22,11 @@ void set_kick(TableReader& reader, SceneForce& force);
 void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
                         const SceneHamiltonian& made, const Parts& parts);
 
-/// Refuses a force that cannot act on the sites of rigid bodies, or on bodies themselves.
+/// Refuses a force that cannot act on the sites of rigid bodies, or on bodies themselves, and one that has the second
+/// degree of particle 0, a rigid body, beside another one that has it.
+/// @param made  the forces that stand before it
 /// @throws SceneError
-void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force);
+void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
+                           const SceneHamiltonian& made, const ParticleSystem<double>& s);
 
 }  // namespace noether

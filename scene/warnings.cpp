@@ -1,5 +1,6 @@
 #include "scene/warnings.hpp"
 
+#include "engine/bodies.hpp"
 #include "engine/charge.hpp"
 #include "engine/given_orbit.hpp"
 #include "integrators/encounters.hpp"
@@ -207,6 +208,23 @@ std::string unmoved_tracers(const Scene& scene) {
       counted(count, "particle"), s.name(first), count == 1 ? "is" : "are");
 }
 
+/// A rigid body whose moments of inertia differ, but that attraction does not turn; empty where there is none.
+std::string unturned_body(const Scene& scene) {
+  const ParticleSystem<double>& s = scene.particles;
+  const std::vector<SceneForce> terms = scene.hamiltonian.terms();
+  const auto attracts = [](const SceneForce& f) { return f.force.claims().kepler; };
+  const auto found = std::find_if(terms.begin(), terms.end(), attracts);
+  if (found == terms.end() || some(scene, &ForceClaims::turning_figures)) return "";
+  for (Index i = 0; i < s.size(); ++i) {
+    if (is_sphere(s, i) || s.bodies()->is_held(i)) continue;
+    const bool own = found - terms.begin() < static_cast<std::ptrdiff_t>(scene.hamiltonian.splitting.own.size());
+    return fmt::format("{} attracts '{}' at its centre and does not turn it, though its moments of inertia differ; {}",
+                       own ? scene.hamiltonian.splitting.name : found->name, s.name(i),
+                       own ? "add gravity_of_bodies with point_masses = false" : "use gravity_of_bodies");
+  }
+  return "";
+}
+
 /// A constant of gravitation that is not the one of the units, however it is given; empty where it is. Names the
 /// units that it has, where they are known.
 std::string other_gravitation(const Scene& scene) {
@@ -287,6 +305,7 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   add(other_center(scene));
   add(other_gravitation(scene));
   add(unmoved_tracers(scene));
+  add(unturned_body(scene));
   for (const SceneWatch& watch : scene.watches) add(times_after_the_end(watch, scene));
   return warnings;
 }
