@@ -1,6 +1,8 @@
 // Rigid bodies over packs are eight systems at once, and over dual numbers the tangent map of one.
 
 #include "forces/external_fields.hpp"
+#include "forces/gravity.hpp"
+#include "forces/oblateness.hpp"
 #include "numbers/dual.hpp"
 #include "numbers/pack.hpp"
 #include "tests/support/catch.hpp"
@@ -46,6 +48,9 @@ ParticleSystem<double> rocks(double lane = 0, double spin = 1) {
   s.set_bodies(std::make_shared<const Bodies>(std::move(bodies)));
   return s;
 }
+
+/// Of the first rock, about an axis of its own.
+const Oblateness oblate{.J2 = 0.05, .J4 = -0.02, .radius = 0.5, .axis = {0.2, -0.1, 1}, .frame = AxisFrame::body};
 
 template <class Base, class... Fs> ForceField<Base> field_on_sites(const Fs&... forces) {
   ForceField<Base> sum, outer;
@@ -193,11 +198,13 @@ ParticleSystem<double> two_rocks() {
 TEST_CASE("eight systems of rigid bodies in lanes have the bits of each run alone", "[rotating][numbers]") {
   const ForceField<double> figures = ForceField<double>().add(GravityOfBodies{}),
                            sites = ForceField<double>().add(GravityOfBodies{.degree = Figure::sites}),
-                           fields = field_on_sites<double>(HarmonicField{0.3}, UniformField{{0, 0.1, -1}});
+                           fields = field_on_sites<double>(HarmonicField{0.3}, UniformField{{0, 0.1, -1}}),
+                           flattened = ForceField<double>().add(oblate);
   const auto slow = [](std::size_t) { return 1.; };
   check_lanes(figures, {.rotor = Rotor::exact}, schemes::srkn14a, slow);
   check_lanes(sites, {.rotor = Rotor::exact}, schemes::verlet, slow);
   check_lanes(fields, {.rotor = Rotor::axes, .axes = "zxy"}, schemes::yoshida_4, slow);
+  check_lanes(flattened, {.rotor = Rotor::exact}, schemes::blanes_moan_s6, slow);
   // Systems that turn about other axes, and one that turns too far for the lanes of turns by axes.
   const auto wild = [](std::size_t k) { return k == 5 ? 40. : k == 3 ? 0. : k % 2 == 0 ? 3. : -0.1; };
   check_lanes(figures, {.rotor = Rotor::exact}, schemes::verlet, wild);
@@ -217,7 +224,9 @@ TEST_CASE("lanes in which a body is a line here and none there are refused", "[r
 
 TEST_CASE("steps of rigid bodies are symplectic in q and p = 2 (0, S) q", "[rotating][numbers][symplectic]") {
   const auto figures = ForceField<Quad>().add(GravityOfBodies{}),
-             sites = ForceField<Quad>().add(GravityOfBodies{.degree = Figure::sites});
+             sites = ForceField<Quad>().add(GravityOfBodies{.degree = Figure::sites}),
+             flattened = ForceField<Quad>().add(Gravity{}).add(oblate);
+  CHECK(form_defect(flattened, {.rotor = Rotor::exact}, schemes::verlet, two_rocks(), 2) < 1e-28);
   CHECK(form_defect(figures, {.rotor = Rotor::exact}, schemes::srkn14a, two_rocks(), 1) < 1e-28);
   CHECK(form_defect(sites, {.rotor = Rotor::exact}, schemes::verlet, two_rocks(), 2) < 1e-28);
   CHECK(form_defect(figures, {.rotor = Rotor::axes}, schemes::verlet, two_rocks(), 2) < 1e-28);

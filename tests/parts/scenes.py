@@ -198,6 +198,8 @@ ROCKS = ("[[particles.rigid_body]]\nname = 'one'\nmass = 1.0\nx = [0.0, 0.0, 0.0
          "inertia = [0.002, 0.003, 0.003]\nangular_velocity = [0.0, 0.5, 1.0]\naxis = [0, 1, 0]\nangle = 0.3\n" +
          body("stone", 0.001, (0.0, -2.0, 0.1), (0.7, 0.0, 0.0)))
 PULL = "type = 'gravity_of_bodies'; G = 1"
+# What the second degree of the first leaves out, about its own axis.
+OWN_AXIS = "type = 'oblateness'; J4 = -0.05; radius = 0.2; axis = [0.1, 0.0, 1.0]; frame = 'body'; G = 1"
 
 HAMILTONIANS = {
     "kinetic_potential": Case(PLANETS, forces(GRAVITY)),
@@ -407,7 +409,7 @@ MONITORS = {
     "momentum": seen("type = 'momentum'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
     "angular_momentum": seen("type = 'angular_momentum'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
     "center_of_mass": seen("type = 'center_of_mass'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
-    "spin": seen("type = 'spin'; body = 'two'; G = 1; steps = {cadence}", Case(ROCKS, forces(PULL))),
+    "spin": seen("type = 'spin'; body = 'two'; G = 1; steps = {cadence}", Case(ROCKS, forces(PULL, OWN_AXIS))),
     "orientation_defect": seen("type = 'orientation_defect'; steps = {cadence}", Case(ROCKS, forces(PULL))),
     "turning_energy": seen("type = 'turning_energy'; steps = {cadence}", Case(ROCKS, forces(PULL))),
     "elements": seen("type = 'elements'; G = 1; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),

@@ -39,6 +39,39 @@ std::string harmonic(double z) { return fmt::format("harmonic\n\n1 {:.17g} 1.1",
 
 const std::string verlet = "method = 'verlet'\nstep = 0.01\n";
 
+TEST_CASE("bodies whose moments of inertia differ are warned of where attraction does not turn them",
+          "[scene][warnings]") {
+  const auto of = [](const std::string& body, const std::string& hamiltonian) {
+    return warnings_of(
+        read_scene("units = 'reduced'\n[[particles.rigid_body]]\nname = 'planet'\nmass = 1\n" + body +
+                       "\n[[particles.body]]\nname = 'moon'\nmass = 0.01\na = 3\n[hamiltonian]\ntype = " + hamiltonian +
+                       "\n[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 10\n",
+                   "scene.toml"));
+  };
+  const std::string flat = "inertia = [0.3, 0.3, 0.4]", sphere = "inertia = [0.4, 0.4, 0.4]";
+  const std::string plain = "'kinetic_potential'\n", force = "[[hamiltonian.force]]\ntype = ";
+  const std::string told =
+      " attracts 'planet' at its centre and does not turn it, though its moments of inertia differ; ";
+  CHECK(of(flat, plain + force + "'gravity'") == std::vector<std::string>{"gravity" + told + "use gravity_of_bodies"});
+  CHECK(of(flat, "'wisdom_holman'") ==
+        std::vector<std::string>{"wisdom_holman" + told + "add gravity_of_bodies with point_masses = false"});
+  const std::string figure = force + "'oblateness'\nradius = 1\nframe = 'body'\n";
+  CHECK(of(flat, "'wisdom_holman'\n" + figure + "J4 = -0.01").size() == 1);
+  for (const std::string& turns :
+       {plain + force + "'gravity_of_bodies'",
+        "'wisdom_holman'\n" + force + "'gravity_of_bodies'\npoint_masses = false",
+        plain + force + "'gravity'\n" + figure + "J2 = 0.1", "'wisdom_holman'\n" + figure + "J2 = 0.1",
+        plain + force + "'gravity_of_bodies'\n" + figure + "J4 = -0.01"}) {
+    CAPTURE(turns);
+    CHECK(of(flat, turns).empty());
+  }
+  CHECK(of(sphere, "'wisdom_holman'").empty());
+  CHECK(of(sphere, plain + force + "'gravity'").empty());
+  // Of a body that its moments do not turn, J2 is no second figure.
+  CHECK(of(sphere, plain + force + "'gravity_of_bodies'\n" + figure + "J2 = 0.1").empty());
+  CHECK(of(flat, plain).empty());  // it turns freely
+}
+
 TEST_CASE("Kepler arcs about a body that is not the heaviest are warned of", "[scene][warnings]") {
   const auto with = [](const std::string& more, const std::string& first) {
     const std::string body = "[[particles.body]]\n";
