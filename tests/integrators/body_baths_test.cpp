@@ -21,10 +21,10 @@ namespace {
 
 using test::turning;
 
-constexpr double warmth = 0.7;
+constexpr double bath_warmth = 0.7;
 
 /// So many bodies of one kind at rest, far from each other.
-ParticleSystem<double> crowd(const RigidBody& body, int count) {
+ParticleSystem<double> crowd_of(const RigidBody& body, int count) {
   ParticleSystem<double> s(unit_system("reduced"));
   Bodies bodies;
   for (int k = 0; k < count; ++k) {
@@ -38,18 +38,18 @@ ParticleSystem<double> crowd(const RigidBody& body, int count) {
 }
 
 /// Sites in the shape of SPC/E water, in units of its own.
-RigidBody water() {
+RigidBody water_body() {
   return body_of_sites("water", {{.place = {0, 0, 0}, .mass = 15.9994},
                                  {.place = {0.8165, 0.5774, 0}, .mass = 1.00794},
                                  {.place = {-0.8165, 0.5774, 0}, .mass = 1.00794}});
 }
-RigidBody needle() {
+RigidBody needle_body() {
   return body_of_sites("needle", {{.place = {0, 0, 0}, .mass = 2}, {.place = {0.3, 0.4, 1.2}, .mass = 1}}, true);
 }
 
 AnyHamiltonian<double> in_langevin(ForceField<double> forces, double friction, Rotor rotor = Rotor::exact) {
   return Langevin(AnyHamiltonian<double>(turning(std::move(forces), {.rotor = rotor})),
-                  {.temperature = warmth, .friction = friction, .seed = 11});
+                  {.temperature = bath_warmth, .friction = friction, .seed = 11});
 }
 
 /// What a crowd has in a bath: mean kinetic energies for each degree of freedom, each in units of k T/2.
@@ -63,7 +63,7 @@ struct Warmth {
 Warmth warmth_of(const ParticleSystem<double>& start, ForceField<double> forces, double step, double friction,
                  Rotor rotor, int looks) {
   const Vec3<double> inertia = start.column<BodyInertia>()[0];
-  const auto bins = [&](int k) { return test::NormalBins(inertia[k] > 0 ? inertia[k] * warmth : 1); };
+  const auto bins = [&](int k) { return test::NormalBins(inertia[k] > 0 ? inertia[k] * bath_warmth : 1); };
   Warmth found{.spins = {bins(0), bins(1), bins(2)}};
   Simulation sim(start, compose(in_langevin(std::move(forces), friction, rotor), schemes::verlet), step);
   REQUIRE(sim.run(20).ok());
@@ -74,12 +74,12 @@ Warmth warmth_of(const ParticleSystem<double>& start, ForceField<double> forces,
       const Vec3<double> in_body = test::in_body_of(s, i), v = s.velocities()[i];
       for (int k = 0; k < 3; ++k) {
         const auto at = static_cast<std::size_t>(k);
-        found.flight[at] += s.masses()[i] * v[k] * v[k] / warmth;
+        found.flight[at] += s.masses()[i] * v[k] * v[k] / bath_warmth;
         if (!(inertia[k] > 0)) {
           found.along_line = std::max(found.along_line, std::abs(in_body[k]));
           continue;
         }
-        found.turn[at] += in_body[k] * in_body[k] / inertia[k] / warmth;
+        found.turn[at] += in_body[k] * in_body[k] / inertia[k] / bath_warmth;
         found.spins[at].add(in_body[k]);
       }
       ++found.samples;
@@ -110,9 +110,9 @@ TEST_CASE("each way to fly and to turn has k T/2 in a bath, spins are normal alo
           "[integrators][body_baths]") {
   // exp(-friction times the time between looks) = e^-10: looks are independent of each other.
   for (const Rotor rotor : {Rotor::exact, Rotor::axes}) {
-    for (const RigidBody& body : {water(), needle()}) {
+    for (const RigidBody& body : {water_body(), needle_body()}) {
       CAPTURE(body.name, static_cast<int>(rotor));
-      const Warmth found = warmth_of(crowd(body, 300), {}, 0.5, 4, rotor, 20);
+      const Warmth found = warmth_of(crowd_of(body, 300), {}, 0.5, 4, rotor, 20);
       check_equipartition(found, body.inertia);
       // Turns about one axis after the other carry some of it off the plane, by the order of their error.
       if (rotor == Rotor::exact) CHECK(found.along_line < 1e-14);
@@ -126,17 +126,17 @@ TEST_CASE("forces and torques leave the temperature of a bath as it is", "[integ
   ForceField<double> springs = test::on_sites(HarmonicField{.k = 3});
   ParticleSystem<double> s(unit_system("reduced"));
   Bodies bodies;
-  for (int k = 0; k < 300; ++k) add_body(s, bodies, water(), {.orientation = {1, 0.1 * k, 0.3, -0.2}});
+  for (int k = 0; k < 300; ++k) add_body(s, bodies, water_body(), {.orientation = {1, 0.1 * k, 0.3, -0.2}});
   s.set_bodies(std::make_shared<const Bodies>(std::move(bodies)));
-  check_equipartition(warmth_of(s, springs, 0.1, 20, Rotor::exact, 20), water().inertia);
+  check_equipartition(warmth_of(s, springs, 0.1, 20, Rotor::exact, 20), water_body().inertia);
 }
 
 TEST_CASE("tops in a bath lean as Langevin's function says, and their points stay", "[integrators][body_baths]") {
   // exp(-m g l cos/k T) over all directions: with a = m g l/k T the mean of cos is - L(a), L = coth a - 1/a, that of
   // its square 1 - 2 L/a; three degrees of freedom are left to each top.
   const Vec3<double> center(0.2, 0.3, 0.5);
-  const double length = std::sqrt(norm2(center)), a = 2 * length / warmth, lean = 1 / std::tanh(a) - 1 / a;
-  const ParticleSystem<double> start = crowd(top("top", 2, {2, 1.5, 1.2}, center), 200);
+  const double length = std::sqrt(norm2(center)), a = 2 * length / bath_warmth, lean = 1 / std::tanh(a) - 1 / a;
+  const ParticleSystem<double> start = crowd_of(top("top", 2, {2, 1.5, 1.2}, center), 200);
   Simulation sim(start, compose(in_langevin(test::weight_on_sites(), 1), schemes::verlet), 0.1);
   auto& temperature = sim.every(100, Temperature{});
   REQUIRE(sim.run(200).ok());
@@ -162,9 +162,9 @@ TEST_CASE("a bath that rescales draws the kinetic energy of bodies by all that f
   // kept. 2 K/k T is then chi squared of f: mean f, variance 2 f.
   const auto start = [] {
     ParticleSystem<double> s(unit_system("reduced"));
-    add_body(s, water(), {.v = {0.3, 0, 0}, .spin = Vec3<double>(1, 2, 3)});
-    add_body(s, water(), {.v = {0, 0.2, 0}, .spin = Vec3<double>(-1, 1, 0.5)});
-    add_body(s, needle(), {.v = {0, 0, 1}, .spin = Vec3<double>(0.8, -0.6, 0)});
+    add_body(s, water_body(), {.v = {0.3, 0, 0}, .spin = Vec3<double>(1, 2, 3)});
+    add_body(s, water_body(), {.v = {0, 0.2, 0}, .spin = Vec3<double>(-1, 1, 0.5)});
+    add_body(s, needle_body(), {.v = {0, 0, 1}, .spin = Vec3<double>(0.8, -0.6, 0)});
     return s;
   };
   for (const bool field : {false, true}) {
@@ -173,7 +173,7 @@ TEST_CASE("a bath that rescales draws the kinetic energy of bodies by all that f
     ForceField<double> forces;
     if (field) forces = test::on_sites(HarmonicField{.k = 1e-9});
     VelocityRescaling<AnyHamiltonian<double>> bath(AnyHamiltonian<double>(turning(std::move(forces))),
-                                                   {.temperature = warmth, .relaxation_time = 1, .seed = 5});
+                                                   {.temperature = bath_warmth, .relaxation_time = 1, .seed = 5});
     Simulation sim(start(), compose(std::move(bath), schemes::verlet), 8);  // e^-8 is left from look to look
     auto& temperature = sim.every(1, Temperature{});
     double mean = 0, square = 0;
@@ -186,7 +186,7 @@ TEST_CASE("a bath that rescales draws the kinetic energy of bodies by all that f
       square += kinetic * kinetic / looks;
     }
     CHECK(temperature.degrees_of_freedom() == static_cast<std::int64_t>(freedom));
-    const double expected = freedom * warmth / 2, variance = freedom * warmth * warmth / 2;
+    const double expected = freedom * bath_warmth / 2, variance = freedom * bath_warmth * bath_warmth / 2;
     CHECK(std::abs(mean - expected) < 4 * std::sqrt(variance / looks));
     // A gamma variable of shape f/2 has a fourth moment of 3 + 12/f variances.
     CHECK(std::abs((square - mean * mean) / variance - 1) < 4 * std::sqrt((2 + 12 / freedom) / looks));
