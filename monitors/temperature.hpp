@@ -11,9 +11,10 @@ namespace noether {
 
 /// Watches the kinetic temperature
 ///
-///     k_B T = 2 K / f,   f = 3 N - constraints
+///     k_B T = 2 K / f,   f = 3 N + turns - constraints
 ///
-/// of the N particles with mass. Where the run keeps momentum, the motion of the centre of mass is no heat: K is that
+/// of the N particles with mass. A rigid body has 3 turns, in a line 2; one that a fixed point holds has no more than
+/// these. Where the run keeps momentum, the motion of the centre of mass is no heat: K is that
 /// of velocities relative to it, and f is 3 less.
 /// @cost O(n), no force evaluation
 class Temperature {
@@ -21,13 +22,12 @@ class Temperature {
   static constexpr bool needs_particles = true;
 
   static constexpr auto describe() {
-    return part<Temperature>(
-        "temperature", "kinetic temperature of the degrees of freedom that are left",
-        formula(
-            "k_B T = 2 K / f,  f = 3 N - constraints; where momentum is kept, K about the centre of mass and f - 3"),
-        quantities("value [temperature]"), source("Allen2017"), state<&Temperature::now_>("now"),
-        state<&Temperature::freedom_>("freedom"), state<&Temperature::values_>("values"),
-        state<&Temperature::slope_unit_>("slope_unit"));
+    return part<Temperature>("temperature", "kinetic temperature of the degrees of freedom that are left",
+                             formula("k_B T = 2 K / f,  f = 3 N + turns - constraints; where momentum is kept, K about "
+                                     "the centre of mass and f - 3"),
+                             quantities("value [temperature]"), source("Allen2017"), state<&Temperature::now_>("now"),
+                             state<&Temperature::freedom_>("freedom"), state<&Temperature::values_>("values"),
+                             state<&Temperature::slope_unit_>("slope_unit"));
   }
 
   template <class Real> void observe(const Snapshot<Real>& now);
