@@ -35,6 +35,39 @@ step = 0.05
 steps = 400
 )";
 
+/// Two bodies of three and four sites, a point, and a body of known moments that turns 0.05 times in a step.
+const std::string bodies_scene = R"(units = "reduced"
+[[particles.body]]
+name = "point"
+mass = 1
+[[particles.rigid_body]]
+name = "three"
+x = [9, 0, 0]
+v = [0, 0, 0]
+site = [{place = [1, 0, 0], mass = 1}, {place = [0, 1, 0], mass = 1}, {place = [0, 0, 1], mass = 2}]
+[[particles.rigid_body]]
+name = "four"
+x = [0, 9, 0]
+v = [0, 0, 0]
+site = [{place = [1, 0, 0], mass = 1}, {place = [0, 1, 0], mass = 1}, {place = [0, 0, 1], mass = 2}, {place = [0, 0, 0], mass = 1}]
+[[particles.rigid_body]]
+name = "fast"
+mass = 1
+inertia = [2, 2, 2]
+x = [0, 0, 9]
+v = [0, 0, 0]
+angular_velocity = [0, 0, 3.141592653589793]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "gravity_of_bodies"
+degree = "sites"
+[integrator]
+method = "verlet"
+step = 0.1
+steps = 100
+)";
+
 void check_explained(const std::string& text, std::initializer_list<const char*> lines) {
   for (const char* line : lines) {
     INFO(line << "\n" << text);
@@ -60,6 +93,29 @@ TEST_CASE("explain tells what a step on a group takes, and who can watch it", "[
   check_explained(output(folder, "explain scene.toml --set integrator.method=lie_group_variational"),
                   {"; rotor variational; ", "\nmonitor 'shadow_hamiltonian' can watch: every step has its action\n"});
   CHECK(has(output(folder, "describe rkmk_dop853"), "; 6 nested commutators in dexp^-1 of a stage\n"));
+}
+
+TEST_CASE("explain tells of rigid bodies: their rotor, sites and bytes", "[cli][explain][bodies]") {
+  // Of a point and of a body 7 numbers and an id, and of a body 3 moments, 4 numbers of its orientation and 3 of its
+  // spin, in columns that all particles have: 18 in all. 3 and 6 pairs of sites are within a body.
+  const SceneFolder folder(bodies_scene);
+  check_explained(output(folder, "explain scene.toml"),
+                  {"\ncolumns: id, position, velocity, mass, inertia, orientation, spin; 144 bytes per particle\n",
+                   "\nrigid bodies: 3 of 8 sites; 9 pairs within a body are left out; rotor exact; the fastest turns "
+                   "0.05 times in a step\n"});
+  check_explained(output(folder, "explain scene.toml --set hamiltonian.rotor=axes"),
+                  {" are left out; rotor axes x y z y x; the fastest turns 0.05 times in a step\n"});
+  check_explained(output(folder, "explain scene.toml --set hamiltonian.rotor=axes --set hamiltonian.axes=yxz"),
+                  {"; rotor axes y x z x y; "});
+  check_explained(output(folder, "explain scene.toml --set hamiltonian.rotor=variational"), {"; rotor variational; "});
+  const std::string json = output(folder, "explain scene.toml --json");
+  CHECK(json_member(json, "bytes_per_particle") == "144");
+  CHECK(json_member(json, "rigid_bodies") == R"({"bodies":3,"held":0,"sites":8,"excluded_pairs":9,"rotor":"exact",)"
+                                             R"("turns_per_step":0.05})");
+  // A top is held by a point, and turns about all of its axes at once: by |(0.3, 0.4, 0.6)| each unit of time.
+  check_explained(output(SceneFolder(group_scene), "explain scene.toml --set integrator.method=verlet"),
+                  {"\nrigid bodies: 1 of 1 site, 1 held by fixed points; rotor exact; the fastest turns 0.012 times "
+                   "in a step\n"});
 }
 
 TEST_CASE("explain tells what a step over an action takes, and who can watch it", "[cli][explain][variational]") {
