@@ -49,7 +49,8 @@ site = [{place = [1, 0, 0], mass = 1}, {place = [0, 1, 0], mass = 1}, {place = [
 name = "four"
 x = [0, 9, 0]
 v = [0, 0, 0]
-site = [{place = [1, 0, 0], mass = 1}, {place = [0, 1, 0], mass = 1}, {place = [0, 0, 1], mass = 2}, {place = [0, 0, 0], mass = 1}]
+site = [{place = [1, 0, 0], mass = 1}, {place = [0, 1, 0], mass = 1}, {place = [0, 0, 1], mass = 2},
+  {place = [0, 0, 0], mass = 1}]
 [[particles.rigid_body]]
 name = "fast"
 mass = 1
