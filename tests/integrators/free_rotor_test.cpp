@@ -205,6 +205,7 @@ TEST_CASE("turns axis by axis are a symmetric map of order 2", "[integrators][fr
       turn_by_axes<double>(Quaternion<double>(1, 0, 0, 0), {0, 0, 2}, inertia, 0.3, {0, 1, 2}).orientation;
   CHECK(std::abs(about[3] - std::sin(0.3 / 0.9)) < 1e-16);
   CHECK(axis_order("zxy") == AxisOrder{2, 0, 1});
+  CHECK_THROWS_WITH(axis_order("xy"), Catch::Matchers::Contains("\"xy\" is not an order of three axes"));
   CHECK_THROWS_WITH(axis_order("xyy"), Catch::Matchers::Contains("\"xyy\" is not an order of three axes"));
 }
 

@@ -158,8 +158,11 @@ TEST_CASE("two waters have the errors of rotations and of constraints", "[integr
   CHECK(near(by_rotations("verlet", 0.002), 2.351e-3));
   CHECK(near(by_rotations("verlet", 0.001), 5.865e-4));
   CHECK(near(by_rotations("verlet", 0.002, Rotor::axes), 2.396e-3));
+  CHECK(near(by_rotations("verlet", 0.001, Rotor::axes), 5.981e-4));
   CHECK(near(by_rotations("blanes_moan_s6", 0.004), 2.867e-6));
   CHECK(near(by_rotations("blanes_moan_s6", 0.002), 1.787e-7));
+  CHECK(near(by_rotations("srkn14a", 0.008), 3.315e-7));
+  CHECK(near(by_rotations("srkn14a", 0.2 / 35), 1.002e-8));
   CHECK(near(by_rattle(0.002), 8.031e-3));
   CHECK(near(by_rattle(0.001), 1.924e-3));
 }
