@@ -35,6 +35,7 @@
 #include "forces/tides.hpp"
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
+#include "integrators/check_flows.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"

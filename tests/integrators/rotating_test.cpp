@@ -1,6 +1,7 @@
 /// Rigid bodies under forces: tops against references of 28 digits, orders, what is kept and what is refused.
 
 #include "integrators/rotating.hpp"
+#include "integrators/check_flows.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/shadow_hamiltonian.hpp"
@@ -206,6 +207,34 @@ TEST_CASE("the shadow finds a torque that is not the slope of its energy, and a 
   CHECK(verdict(turning(weighing(1))).starts_with("kept"));
   CHECK_FALSE(verdict(turning(weighing(0.9))).starts_with("kept"));
   CHECK_FALSE(verdict(WithoutThirdAxis(KineticPotential<ForceField<double>>(weighing(1)))).starts_with("kept"));
+}
+
+TEST_CASE("a rotor without an axis and a torque that is no slope are named before a run", "[integrators][rotating]") {
+  const auto weighing = [](double part) {
+    ForceField<double> force;
+    force.add(Weight{part});
+    return force;
+  };
+  // It has a point and a line beside it, all of them turned and moving.
+  ParticleSystem<double> s = heavy_top();
+  s.add("point", 2, {1, 2, 3}, {0.1, -0.4, 0.2});
+  add_body(s, body_of_sites("line", {{.place = {0, 0, 0}, .mass = 2}, {.place = {0.3, 0.4, 1.2}, .mass = 1}}, true),
+           {.x = {5, 0, 0}, .v = {0, 0.3, 0}, .spin = Vec3<double>(0.8, -0.6, 0)});
+  s.column<BodyOrientation>().set(0, Quaternion<double>(0.5, -0.5, 0.5, 0.5));
+  for (const Rotor rotor : {Rotor::exact, Rotor::axes, Rotor::variational}) {
+    CHECK_NOTHROW(check_flows(turning(test::weight_on_sites(), {.rotor = rotor}), s));
+  }
+  // Its third axis lies along the y of space now: Pi_3/I_3 = -0.4/(2/3).
+  CHECK_THROWS_WITH(
+      check_flows(WithoutThirdAxis(KineticPotential<ForceField<double>>(test::weight_on_sites())), s),
+      "'kinetic_potential' turns 'top' about its own axis z by 0, where the slope of its energy has -0.6; "
+      "check the flows of its letters and the energy it reports");
+  const ParticleSystem<double> top = heavy_top();
+  CHECK_NOTHROW(check_flows(turning(weighing(1)), top));
+  // arm x weight = (-0.3, 0.2, 0), of which nine tenths act.
+  CHECK_THROWS_WITH(check_flows(turning(weighing(0.9)), top),
+                    "'kinetic_potential' twists 'top' about x by -0.27, where the slope of its energy has -0.3; check "
+                    "the flows of its letters and the energy it reports");
 }
 
 TEST_CASE("a body that a fixed point holds is refused on Kepler arcs", "[integrators][rotating]") {
