@@ -179,7 +179,7 @@ void refuse_unasked(const AnyHamiltonian<double>& hamiltonian) {
   if (!claims.energy) why = "one of its forces has no energy";
   if (claims.constraints > 0) why = "constraints hold its particles";
   if (claims.velocity_forces) why = "its kicks take forces that depend on velocities";
-  if (!claims.inertial) why = "it has coordinates of its own";
+  if (!claims.inertial) why = "it has its own coordinates";
   if (!claims.symplectic || claims.dissipative || !claims.irreversible.empty() || !claims.no_action.empty())
     why = "some of its letters follow no energy";
   if (why.empty()) return;

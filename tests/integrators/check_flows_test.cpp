@@ -92,7 +92,7 @@ TEST_CASE("what no energy tells is refused", "[integrators][check_flows]") {
   CHECK(refusal(test::damped(test::kinetic_potential(HarmonicField{.k = 2}), {.rate = 1}), s) ==
         "the flows of 'damped' cannot be compared with its energy: some of its letters follow no energy");
   CHECK(refusal(test::wisdom_holman({.G = test::outer_G}), test::outer_planets()) ==
-        "the flows of 'wisdom_holman' cannot be compared with its energy: it has coordinates of its own");
+        "the flows of 'wisdom_holman' cannot be compared with its energy: it has its own coordinates");
   const test::Mechanism chain = test::hanging_chain(3);
   CHECK(refusal(test::hamiltonian_of(chain), chain.particles) ==
         "the flows of 'kinetic_potential' cannot be compared with its energy: constraints hold its particles");
