@@ -28,6 +28,9 @@ struct WaterConstants {
 WaterConstants constants_of(WaterModel model) {
   constexpr double kcal = 4.184;
   if (model == WaterModel::tip3p) return {0.09572, 104.52, 0.417, 0.315061, 0.636386, 502416, 628.02, true};
+  if (model == WaterModel::tip3p_flexible) {
+    return {0.09572, 104.52, 0.417, 0.315061, 0.636386, 2 * 450 * 100 * kcal, 2 * 55 * kcal, false};
+  }
   if (model == WaterModel::spc_fw) {
     return {0.1012, 113.24, 0.41, 0.3165492, 0.1554253 * kcal, 1059.162 * 100 * kcal, 75.90 * kcal, false};
   }

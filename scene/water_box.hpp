@@ -14,21 +14,27 @@ namespace noether {
 
 /// Water of three sites.
 ///
-///     model    O-H [nm]  H-O-H     q_H [e]   sigma [nm]     epsilon [kJ/mol]
-///     spce     0.1       109.47    0.4238    0.316555789    0.65016944
-///     tip3p    0.09572   104.52    0.417     0.315061       0.636386
-///     spc_fw   0.1012    113.24    0.41      0.3165492      0.6502995
+///     model             O-H [nm]  H-O-H     q_H [e]   sigma [nm]     epsilon [kJ/mol]
+///     spce              0.1       109.47    0.4238    0.316555789    0.65016944
+///     tip3p             0.09572   104.52    0.417     0.315061       0.636386
+///     spc_fw            0.1012    113.24    0.41      0.3165492      0.6502995
+///     tip3p_flexible    0.09572   104.52    0.417     0.315061       0.636386
 ///
 /// The first two are rigid: they were made for constraints. Bonds and angles of all are `harmonic`. Constants of
-/// `spc_fw` are its own, 443153.4 kJ/mol/nm^2 and 317.5656 kJ/mol/rad^2; those of the others, for who lets them move,
+/// `spc_fw` are its own, 443153.4 kJ/mol/nm^2 and 317.5656 kJ/mol/rad^2; those of `tip3p_flexible` are CHARMM's for the
+/// same molecule, 376560 and 460.24 (450 kcal/mol/A^2 and 55 kcal/mol/rad^2 without a factor 1/2), with hydrogens that
+/// have no Lennard-Jones parameters, as those of `tip3p` have none. Constants of the others, for who lets them move,
 /// are those of GROMACS's files: 345000 and 383 for `spce`, 502416 and 628.02 for `tip3p`. Lennard-Jones parameters of
 /// `spce` are as NIST has them in its reference calculations.
-/// @source BerendsenGrigeraStraatsma1987, JorgensenChandrasekhar1983, WuTepperVoth2006
-enum class WaterModel : std::uint8_t { spce, tip3p, spc_fw };
+/// @source BerendsenGrigeraStraatsma1987, JorgensenChandrasekhar1983, WuTepperVoth2006, MacKerell1998
+enum class WaterModel : std::uint8_t { spce, tip3p, spc_fw, tip3p_flexible };
 
 template <> struct EnumNames<WaterModel> {
-  static constexpr std::array<std::pair<WaterModel, std::string_view>, 3> values = {
-      {{WaterModel::spce, "spce"}, {WaterModel::tip3p, "tip3p"}, {WaterModel::spc_fw, "spc_fw"}}};
+  static constexpr std::array<std::pair<WaterModel, std::string_view>, 4> values = {
+      {{WaterModel::spce, "spce"},
+       {WaterModel::tip3p, "tip3p"},
+       {WaterModel::spc_fw, "spc_fw"},
+       {WaterModel::tip3p_flexible, "tip3p_flexible"}}};
 };
 
 /// Water in a cubic periodic box: oxygens on sites of the cubic lattice on which they stand farthest apart, vacancies
@@ -58,8 +64,8 @@ struct WaterBox {
   static constexpr auto describe() {
     return part<WaterBox>(
         "water_box", "water of three sites in a cubic periodic box, each molecule turned at random",
-        source("BerendsenGrigeraStraatsma1987, JorgensenChandrasekhar1983, WuTepperVoth2006"),
-        field<&WaterBox::model>("model", "1", "spce and tip3p are rigid, spc_fw is flexible"),
+        source("BerendsenGrigeraStraatsma1987, JorgensenChandrasekhar1983, WuTepperVoth2006, MacKerell1998"),
+        field<&WaterBox::model>("model", "1", "spce and tip3p are rigid, spc_fw and tip3p_flexible are flexible"),
         field<&WaterBox::molecules>("molecules", "1", "number of molecules").required("512"),
         field<&WaterBox::density>("density", "density", "mass per volume").required("\"0.997 g/cm^3\""),
         field<&WaterBox::hydrogen_mass>("hydrogen_mass", "mass",
