@@ -123,6 +123,15 @@ bool is_accurate(const std::optional<double>& error, const std::optional<double>
   return below ? within(error, below, {}) : !above || within(error, above, {});
 }
 
+/// Frequencies of the start; none where forces are not finite there, as where bodies touch: the run then ends by name.
+Spectrum spectrum_of_start(const Scene& scene) {
+  try {
+    return spectrum_at(scene, scene.particles);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 /// One verdict on one scene, method by method.
 class Judge {
  public:
@@ -131,7 +140,7 @@ class Judge {
         verdict_(verdict),
         options_(options),
         place_(std::move(place)),
-        spectrum_(spectrum_at(scene, scene.particles)) {
+        spectrum_(spectrum_of_start(scene)) {
     if (!scene.hamiltonian.constraints.empty()) spectrum_ = {};
     bounds_.linear = scene.hamiltonian.constraints.empty() && is_linear(scene);
     if (spectrum_.fastest > 0) bounds_.frequency = spectrum_.fastest;

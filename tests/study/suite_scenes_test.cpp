@@ -2,6 +2,7 @@
 
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
+#include "integrators/free_rotor.hpp"
 #include "study/candidate.hpp"
 #include "study/suite.hpp"
 #include "tests/study/scenes.hpp"
@@ -155,6 +156,39 @@ TEST_CASE("theory has a verdict for every method on the oscillator, at three ste
       CHECK_FALSE(expected_by_theory(scene, fixed_candidate(scene, name), step).empty());
     }
   }
+}
+
+TEST_CASE("bodies that turn ten thousand times in a step turn right to the rounding of the angle", "[suite]") {
+  const Scene scene = suite_scene("many_turns.toml");
+  Simulation<double> run = assemble(scene);
+  REQUIRE(run.run(3).ok());
+  const ParticleSystem<double>&start = scene.particles, &now = run.particles();
+  for (Index i = 0; i < start.size(); ++i) {
+    if (start.name(i) == "beside the separatrix") continue;  // where it is after so long cannot be told
+    CAPTURE(start.name(i));
+    // The same turn in 113 bits, all of it at once.
+    const Vec3<double> spin = start.column<BodySpin>()[i], inertia = start.column<BodyInertia>()[i];
+    const Quaternion<double> q = start.column<BodyOrientation>()[i], turned = now.column<BodyOrientation>()[i];
+    const Quaternion<Quad> truth =
+        turn_exactly<Quad>(q.cast<Quad>(), spin.cast<Quad>(), inertia.cast<Quad>(), Quad(3)).orientation;
+    const double angle = 3 * rate_in_body<double>(spin_in_body<double>(q, spin), inertia).norm();
+    for (int k = 0; k < 4; ++k) {
+      CHECK(std::abs(static_cast<double>(Quad(turned[k]) - truth[k])) <= 3e-16 * angle);  // no spin: to the bit
+    }
+  }
+}
+
+TEST_CASE("of two rocks a light one goes its way, and where they touch the run ends and names one", "[suite]") {
+  const Suite suite = run_suite({std::string(NOETHER_SOURCE_DIR) + "/study/suite/rocks.toml"});
+  int ended = 0;
+  for (const SuiteRow& row : suite.rows) {
+    CAPTURE(row.method, row.sets, row.found, row.energy_error.value_or(-1), row.message);
+    CHECK(row.agrees);
+    if (row.expected != "unbounded") continue;
+    ++ended;
+    CHECK_THAT(row.message, Catch::Contains("of planet is not finite"));
+  }
+  CHECK(ended == 1);
 }
 
 }  // namespace
