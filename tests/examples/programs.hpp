@@ -56,6 +56,7 @@
 #include "integrators/velocity_rescaling.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/bodies.hpp"
+#include "io/body_sites.hpp"
 #include "io/digest.hpp"
 #include "io/structure.hpp"
 #include "io/trajectory.hpp"
@@ -92,6 +93,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
