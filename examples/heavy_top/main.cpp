@@ -83,10 +83,13 @@ int main() {
   tell_splitting("srkn6b", Rotor::exact, 50);
   tell_splitting("srkn11b", Rotor::exact, 30);
   tell_splitting("srkn14a", Rotor::exact, 30);
+  tell_group("rkmk_euler", 300);
+  tell_group("rkmk_heun", 150);
   for (const char* name :
        {"crouch_grossman_3", "crouch_grossman_4", "commutator_free_3", "commutator_free_4", "rkmk_rk4"})
     tell_group(name, 75);
   tell_group("rkmk_dormand_prince_5", 50);
+  tell_group("rkmk_cash_karp_5", 50);
   tell_group("rkmk_dop853", 25);
   fmt::print("{}\n", io::digest(sim.particles()));
   return exit_code(outcome);

@@ -68,6 +68,24 @@ void write_section(const char* file) {
   std::fclose(out);
 }
 
+/// When the angle of the resonance passes 0, by lines between two looks.
+struct Passages {
+  Spin spin;
+  double before = 0, at = 0;
+  std::vector<double> times = {};
+
+  void observe(const Snapshot<double>& now) {
+    spin.observe(now);
+    if (before * spin.angle() < 0) times.push_back(at + (now.time() - at) * before / (before - spin.angle()));
+    before = spin.angle();
+    at = now.time();
+  }
+  double period() const {
+    if (times.size() < 2) return 0;
+    return 2 * (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  }
+};
+
 int main() {
   const UnitSystem& solar = unit_system("solar");
   const double km = unit_value("km", solar);
@@ -84,11 +102,16 @@ int main() {
   sim.every(1, AngularMomentum{});
   Spin resonance{"Mercury"};
   resonance.resonance = {3, 2};
+  auto& passages = sim.every(1, Passages{resonance});
   auto& spin = sim.every(5, std::move(resonance));
   sim.every(50, io::TrajectoryWriter{"run.h5"});
   const Outcome outcome = sim.run_until(21920 * day);
   fmt::print("{}: energy within {:.1e}\n", outcome, energy.worst());
   fmt::print("theta - 3/2 M of Mercury now: {:.4f} rad; its obliquity {:.1e}\n", spin.angle(), spin.obliquity());
+  const double e = 0.2056, year = 365.25 * day, squash = (mercury.inertia[1] - mercury.inertia[0]) / mercury.inertia[2];
+  const double h = 7 * e / 2 - 123 * std::pow(e, 3) / 16 + 489 * std::pow(e, 5) / 128;
+  fmt::print("it librates in {:.2f} yr; small librations take 1/sqrt(3 (B - A)/C H(e)) orbits, {:.2f} yr\n",
+             passages.period() / year, 87.969 * day / std::sqrt(3 * squash * h) / year);
   write_section("section.csv");
   fmt::print("{}\n", io::digest(sim.particles()));
   return exit_code(outcome);
