@@ -228,7 +228,7 @@ void print_measured(bool json) {
   std::vector<Json> turning;
   for (const MeasuredTurns& one : turns) {
     turning.push_back(Json::object({{"method", one.method},
-                                    {"rotor", rotor_name(one.rotor)},
+                                    {"rotor", one.turns()},
                                     {"order", one.order},
                                     {"claimed_order", one.claimed_order},
                                     {"kicks", one.kicks},
