@@ -35,6 +35,7 @@ std::vector<std::string> known_names();
 std::span<const MethodInfo> runge_kutta_list();
 std::span<const MethodInfo> collocation_list();
 std::span<const MethodInfo> hbvm_list();
+std::span<const MethodInfo> boris_sdc_list();
 std::span<const MethodInfo> encke_list();
 std::span<const MethodInfo> wide_gauss_list();
 std::span<const MethodInfo> nystrom_list();

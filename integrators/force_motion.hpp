@@ -88,6 +88,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     return {.name = name_,
             .second_order = true,
             .velocity_dependent = forces.velocity_dependent,
+            .gyrates = forces.gyrates,
             .time_dependent = forces.time_dependent,
             .energy = forces.energy,
             .dissipative = forces.dissipative,
@@ -105,7 +106,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     work_ = s;
     work_.keep_low_words(false);
     work_.clock() = Clock<Real>::free(0);
-    a_ = VectorColumn<Real>(s.size());
+    a_ = rates_ = VectorColumn<Real>(s.size());
     in_lanes_ = std::is_same_v<Real, double> && has_lanes(forces_) && s.size() <= most_in_lanes;
     if (in_lanes_) bind_lanes(s);
     along_.reset();
@@ -263,6 +264,14 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     a.resize(3 * work_.size());
     write(a.data());
   }
+  void accelerate_apart(const Real& t, const Vector<Real>& y, Vector<Real>& a, Vector<Real>& rate) override {
+    if (!claims_of(forces_).gyrates) return VectorField<Real>::accelerate_apart(t, y, a, rate);
+    sum(t, y, &rates_);
+    a.resize(3 * work_.size());
+    write(a.data());
+    rate.resize(3 * work_.size());
+    write(rates_, rate.data());
+  }
   const Real* evaluate_stages(const StageStates<Real>& states, Real* out) override {
     if constexpr (sees_packs) {
       if (in_lanes_) return evaluate_lanes(states);
@@ -355,16 +364,18 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     states.fill_lanes(3 * n, out);
   }
 
-  void sum(const Real& t, const Vector<Real>& y) {
+  /// @param rates  if given, gets the rates at which velocities turn, and accelerations are without these turns
+  void sum(const Real& t, const Vector<Real>& y, VectorColumn<Real>* rates = nullptr) {
     scatter(y, work_);
     work_.clock().set_stage_offset(t);
-    sum_forces();
+    sum_forces(rates);
   }
   /// Accelerations of the particles at work. Where a force cannot be computed they are no numbers: a shorter step may
   /// help, or the run has diverged.
-  void sum_forces() {
+  void sum_forces(VectorColumn<Real>* rates = nullptr) {
     work_.wrap();
     ForceSink<Real> sink(a_, work_, {}, &workspace_);
+    if (rates != nullptr) sink.set_gyrations(*rates);
     forces_.add_to(sink, work_);
     if (!sink.failure()) return;
     this->note(sink.failure());
@@ -397,8 +408,9 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   template <class Number> static void spoil(VectorColumn<Number>& a) {
     for (int k = 0; k < 3; ++k) std::fill_n(a.component(k), a.size(), Number(std::numeric_limits<double>::quiet_NaN()));
   }
-  void write(Real* out) const {
-    for (int k = 0; k < 3; ++k) std::copy_n(a_.component(k), work_.size(), out + k * work_.size());
+  void write(Real* out) const { write(a_, out); }
+  static void write(const VectorColumn<Real>& from, Real* out) {
+    for (int k = 0; k < 3; ++k) std::copy_n(from.component(k), from.size(), out + k * from.size());
   }
 
   /// The particles on their way along a direction.
@@ -431,7 +443,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   Workspace workspace_, beside_workspace_;
   ParticleSystem<Real> work_;
   std::optional<ParticleSystem<Real>> other_;  ///< where secants begin; made by the first of them
-  VectorColumn<Real> a_;
+  VectorColumn<Real> a_, rates_;
   bool in_lanes_ = false, sets_ = false;
   ParticleSystem<Pack> packs_;
   VectorColumn<Pack> pack_a_;

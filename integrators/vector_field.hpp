@@ -51,6 +51,7 @@ struct FieldClaims {
   bool second_order = false;       ///< y = (q, v) and q' = v
   bool canonical = false;          ///< y = (q, p), q' = dH/dp and p' = -dH/dq
   bool velocity_dependent = true;  ///< for second order: v' depends on v
+  bool gyrates = false;            ///< as v' = a + v x rate alone, which `acceleration_and_rate` tells apart
   bool time_dependent = false;
   bool energy = false;  ///< an energy exists
   bool dissipative = false;
@@ -101,6 +102,12 @@ template <class Real> class VectorField {
   void acceleration(const Real& t, const Vector<Real>& y, Vector<Real>& a) {
     ++evaluations_.force;
     accelerate(t, y, a);
+  }
+  /// a and rate at y = (q, v), counted once, for v' = a + v x rate; each of shape (size / 2), `rate` of zeros where
+  /// nothing gyrates. @throws LogicError  where v' depends on v otherwise
+  void acceleration_and_rate(const Real& t, const Vector<Real>& y, Vector<Real>& a, Vector<Real>& rate) {
+    ++evaluations_.force;
+    accelerate_apart(t, y, a, rate);
   }
   /// Rates (for second order: accelerations) at all stages, in the layout of the states, those that are wanted counted;
   /// lanes beyond the stages hold the rates of the first.
@@ -212,6 +219,11 @@ template <class Real> class VectorField {
   virtual void evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) = 0;
   virtual void accelerate(const Real& /*t*/, const Vector<Real>& /*y*/, Vector<Real>& /*a*/) {
     throw LogicError("a system of first order has no acceleration");
+  }
+  virtual void accelerate_apart(const Real& t, const Vector<Real>& y, Vector<Real>& a, Vector<Real>& rate) {
+    if (claims().velocity_dependent) throw LogicError("accelerations depend on velocities in a way that is not known");
+    accelerate(t, y, a);
+    rate.setZero(a.size());
   }
   /// One stage after the other, unless a field knows better.
   virtual const Real* evaluate_stages(const StageStates<Real>& states, Real* out);
