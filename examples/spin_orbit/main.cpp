@@ -25,9 +25,10 @@ using namespace noether;
 const double pi = std::acos(-1.0);
 
 /// Kepler arcs with spins: gravity beside that of point masses in the kicks.
-auto planet_that_turns() {
-  const GravityOfBodies figure{.point_masses = false};
-  return Rotating(WisdomHolman<double, Sum<GravityOfBodies>>({}, Sum{figure}));
+AnyHamiltonian<double> planet_that_turns() {
+  ForceField<double> figure;
+  figure.add(GravityOfBodies{.point_masses = false});
+  return AnyHamiltonian<double>(Rotating<AnyHamiltonian<double>>(WisdomHolman<double, ForceField<double>>({}, figure)));
 }
 
 /// A satellite of a mass of 1 about one of no size, on an orbit of period 2 pi, at its pericenter: its long axis at an
@@ -46,7 +47,20 @@ ParticleSystem<double> satellite(double e, double asphericity, double angle, dou
   return s;
 }
 
-/// Angle and rate of Hyperion's turn at each pericenter, from many starts: a surface of section.
+/// Angle and rate of Hyperion's turn: a row for each look.
+struct Section {
+  std::FILE* out;
+  int start;
+
+  void observe(const Snapshot<double>& now) {
+    const ParticleSystem<double>& s = now.state();
+    const Mat3<double> r = rotation_matrix<double>(s.column<BodyOrientation>()[1]);
+    const double angle = std::fmod(std::atan2(r(1, 0), r(0, 0)) + 2 * pi, pi);  // the axis has no front
+    fmt::print(out, "{:.5f},{:.5f},{}\n", angle, s.column<BodySpin>()[1][2] / s.column<BodyInertia>()[1][2], start);
+  }
+};
+
+/// The same at each pericenter, from many starts: a surface of section.
 void write_section(const char* file) {
   std::FILE* out = std::fopen(file, "w");
   if (out == nullptr) return;
@@ -56,14 +70,8 @@ void write_section(const char* file) {
     const double rate = 0.3 + 0.18 * start;
     Simulation sim(satellite(0.1, 0.264, 0.3, rate), compose(planet_that_turns(), *schemes::find("aba_8_6_4")),
                    2 * pi / 40);
-    for (int orbit = 0; orbit < 200; ++orbit) {
-      if (!sim.run(40).ok()) return;
-      const ParticleSystem<double>& now = sim.particles();
-      const Mat3<double> r = rotation_matrix<double>(now.column<BodyOrientation>()[1]);
-      const double angle = std::fmod(std::atan2(r(1, 0), r(0, 0)) + 2 * pi, pi);  // the axis has no front
-      fmt::print(out, "{:.5f},{:.5f},{}\n", angle, now.column<BodySpin>()[1][2] / now.column<BodyInertia>()[1][2],
-                 start);
-    }
+    sim.every(40, Section{out, start});
+    if (!sim.run(200 * 40).ok()) break;
   }
   std::fclose(out);
 }
