@@ -43,11 +43,11 @@ ParticleSystem<double> both(BodyState of_beta, double a = 2.548 * km) {
   return rocks;
 }
 
-Simulation<double> going_round(ParticleSystem<double> rocks, Figure degree, double step) {
+Simulation<double> going_round(ParticleSystem<double> rocks, Figure degree, const char* method, double step) {
   ForceField<double> pull;
   pull.add(GravityOfBodies{.degree = degree});
   const AnyHamiltonian<double> turning(Rotating<AnyHamiltonian<double>>(KineticPotential{pull}));
-  return {std::move(rocks), compose(turning, *schemes::find("srkn14a")), step};
+  return {std::move(rocks), compose(turning, *schemes::find(method)), step};
 }
 
 /// How Beta looks away from Alpha, and how it turns once each orbit: where the line from Alpha crosses the first axis
@@ -136,9 +136,9 @@ void write_section(const char* file) {
   fmt::print(out, "angle,rate,start\n");
   for (int start = 0; start < 24; ++start) {
     const Vec3<double> rate(0, 0, (0.1 + 0.1 * start) * mean_motion);
-    Simulation sim = going_round(both({.angular_velocity = rate}), Figure::second_degree, 0.4 * hour);
+    Simulation sim = going_round(both({.angular_velocity = rate}), Figure::second_degree, "srkn6b", 0.4 * hour);
     const auto& libration = sim.every(1, Libration{});
-    if (!sim.run_until(200 * 17.1 * hour).ok()) break;
+    if (!sim.run(6400).ok()) break;  // 150 orbits
     for (const auto& [time, angle, turn] : libration.rounds) fmt::print(out, "{:.4f},{:.4f},{}\n", angle, turn, start);
   }
   std::fclose(out);
@@ -152,7 +152,7 @@ void tell(const char* way, const Libration& of) {
 
 /// The same year by mass points.
 Libration libration_by_sites() {
-  Simulation sim = going_round(both(locked), Figure::sites, 0.2 * hour);
+  Simulation sim = going_round(both(locked), Figure::sites, "srkn14a", 0.2 * hour);
   auto& libration = sim.every(1, Libration{});
   const Outcome outcome = sim.run_until(year);
   if (!outcome.ok()) fmt::print("{}\n", outcome);
@@ -160,7 +160,7 @@ Libration libration_by_sites() {
 }
 
 int main() {
-  Simulation sim = going_round(both(locked), Figure::second_degree, 0.2 * hour);
+  Simulation sim = going_round(both(locked), Figure::second_degree, "srkn14a", 0.2 * hour);
   auto& energy = sim.every(10, Energy{});
   auto& momentum = sim.every(10, AngularMomentum{});
   auto& spin = sim.every(10, Spin{"Beta"});
