@@ -101,9 +101,9 @@ Rates rates_of_flows(AnyHamiltonian<double>& hamiltonian, const ParticleSystem<d
 }
 
 /// Of particle `i`, by the slopes of the energy.
-class Slopes {
+class EnergySlopes {
  public:
-  Slopes(AnyHamiltonian<double>& hamiltonian, const ParticleSystem<double>& s, const Scales& scales)
+  EnergySlopes(AnyHamiltonian<double>& hamiltonian, const ParticleSystem<double>& s, const Scales& scales)
       : hamiltonian_(hamiltonian), s_(s), moved_(s), scales_(scales) {}
 
   Vec3<double> velocity(Index i) {
@@ -130,7 +130,7 @@ class Slopes {
   }
 
  private:
-  /// Slopes of the energy with what `move` does to a copy.
+  /// EnergySlopes of the energy with what `move` does to a copy.
   template <class Move> Vec3<double> along_axes(double h, const Move& move) {
     Vec3<double> slopes;
     for (int k = 0; k < 3; ++k) {
@@ -193,7 +193,7 @@ void check_flows(AnyHamiltonian<double> hamiltonian, ParticleSystem<double> s) {
   refuse_unasked(hamiltonian);
   const Scales scales = scales_of(hamiltonian, s);
   const Rates flows = rates_of_flows(hamiltonian, s, 10 * relative_step * scales.time);
-  Slopes slopes(hamiltonian, s, scales);
+  EnergySlopes slopes(hamiltonian, s, scales);
   Worst moves{"moves", "along"}, kicks{"accelerates", "along"}, turns{"turns", "about its own axis"},
       twists{"twists", "about"};
   const Index asked = particles_asked(s.size());
