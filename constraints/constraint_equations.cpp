@@ -251,7 +251,8 @@ template <class Real> bool ConstraintEquations<Real>::on_this_side(Index* equati
 }
 
 template <class Real> void ConstraintEquations<Real>::measure(double before, double after, std::int64_t iterations) {
-  if (iterations == 0 || !(after > 0) || !(before > after) || !std::isfinite(before)) return;
+  after = after == 0 ? unit_roundoff : after;
+  if (iterations == 0 || !(before > after) || !std::isfinite(before)) return;
   work_.measured += iterations;
   work_.log += std::log(after / before);
 }

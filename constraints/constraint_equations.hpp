@@ -104,7 +104,11 @@ template <class Real> class ConstraintEquations {
   const ConstraintWork& work() const { return work_; }
   void count_iteration() { ++work_.iterations; }
   void count_iterations(std::int64_t more) { work_.iterations += more; }
-  /// Notes how far the iterations of a position stage reduced its largest violation; it does not count them.
+  /// Whether those whose stages do not see violations are to look now: about once in 64 stages, and not at all where
+  /// others are measured anyway.
+  bool looks() const { return work_.iterations > 64 * work_.measured; }
+  /// Notes how far the iterations of a position stage reduced its largest violation; it does not count them. What is
+  /// left as 0 is below rounding.
   void measure(double before, double after, std::int64_t iterations);
   void restore(const ConstraintWork& work) { work_ = work; }
 

@@ -51,6 +51,7 @@ struct ConstraintMethodInfo {
   Index iterations = 1000;                ///< as many as it takes unless told otherwise, or makes at most
   bool distances_alone = false;           ///< whether it serves no other constraints
   bool equal_lengths = false;             ///< whether lengths of molecules side by side must be the same within 1 %
+  bool direct = false;                    ///< whether it needs no iterations where its closed form has a solution
   MoleculeKernelsInUse* lanes = nullptr;  ///< for molecules held by distances alone; null: for no others than triangles
   MoleculeKernelsInUse* triangles =
       nullptr;  ///< for rigid ones of three sites; null, and `lanes` too: nothing is in lanes
@@ -93,6 +94,7 @@ inline constexpr std::array constraint_methods{
     ConstraintMethodInfo{.method = ConstraintMethod::settle,
                          .name = "settle",
                          .end = SolverEnd::rounding,
+                         .direct = true,
                          .triangles = settle_in_lanes,
                          .make = newton_constraints,
                          .make_quad = newton_constraints},

@@ -202,7 +202,7 @@ bool ConstraintSolver<Real>::solve_in_lanes(ParticleSystem<Real>& s, VectorColum
   if constexpr (std::is_same_v<Real, double>) {
     if (lanes_.empty() || h == 0) return true;
     const VectorColumn<double>& start = s.box().is_periodic() ? std::as_const(s).positions() : moving().start();
-    const MoleculeLanes::Solved solved = lanes_.solve_positions(s, start, x, s.velocities(), h);
+    const MoleculeLanes::Solved solved = lanes_.solve_positions(s, start, x, s.velocities(), h, moving().looks());
     moving().count_iterations(solved.sweeps);
     moving().measure(solved.before, solved.after, solved.sweeps);
     return std::all_of(solved.open.begin(), solved.open.end(),

@@ -43,6 +43,8 @@ class LincsConstraints final : public ConstraintStages<double> {
   void expand(Index order);
   /// Adds what the series comes to, and moves particles from where free motion ends.
   void take(Equations& equations, const ParticleSystem<double>& s, VectorColumn<double>& x) const;
+  /// The largest relative violation of the bond vectors found last.
+  double violation(const Equations& equations) const;
   /// @return whether no bond is lost; else the first one is named
   bool check(Equations& equations, const ParticleSystem<double>& s, const char* why) const;
   const char* why_lost(Equations& equations, const ParticleSystem<double>& s);
@@ -112,6 +114,13 @@ void LincsConstraints::take(Equations& equations, const ParticleSystem<double>& 
   equations.round_to_grid(s.box(), x);
 }
 
+double LincsConstraints::violation(const Equations& equations) const {
+  double worst = 0;
+  for (Index e = 0; e < equations.size(); ++e)
+    worst = std::max(worst, std::abs(norm2(now_[at(2 * e)]) / equations.scale(e) - 1) / 2);
+  return worst;
+}
+
 bool LincsConstraints::check(Equations& equations, const ParticleSystem<double>& s, const char* why) const {
   const auto worst = std::find_if(lost_.begin(), lost_.end(), [](double lost) { return lost != 0; });
   if (worst == lost_.end()) return true;
@@ -145,6 +154,8 @@ bool LincsConstraints::solve_positions(Equations& equations, const ParticleSyste
   equations.multipliers().setZero();
   free_ = x;
   equations.find_gradients(equations.seen(s, x), now_);
+  const bool looks = equations.looks();
+  const double before = looks ? violation(equations) : 0;
   for_bonds([&](Index e) {
     const Vec3<double>& r = start[at(2 * e)];
     const double d2 = equations.scale(e), r2 = norm2(r), violation = std::abs(r2 - d2) / (2 * d2);
@@ -174,7 +185,9 @@ bool LincsConstraints::solve_positions(Equations& equations, const ParticleSyste
     lost_[at(e)] = std::abs(l2 - d2) <= 2 * lost_violation * d2 ? 0 : std::sqrt(l2 / d2);
   });
   if (!check(equations, s, why_lost(equations, s))) return false;
-  equations.count_iterations((options.most_iterations() + 1) * options.order);
+  const Index powers = (options.most_iterations() + 1) * options.order;
+  equations.count_iterations(powers);
+  if (looks) equations.measure(before, violation(equations), powers);
   return true;
 }
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -27,6 +28,8 @@ constexpr double most_ratio_of_tree = 1e7;
 constexpr int segments = 16;
 /// Constraints that a thread takes at a time.
 constexpr Index share_of_thread = 256;
+/// So many tell what violations are, and cost nothing beside a stage of all.
+constexpr Index bonds_to_look_at = 64;
 
 const ConstraintsOf<Distance>* distances(const ConstraintGroup& group) {
   return dynamic_cast<const ConstraintsOf<Distance>*>(&group);
@@ -322,12 +325,35 @@ MoleculeTask MoleculeLanes::task(double h) const {
 }
 
 MoleculeLanes::Solved MoleculeLanes::solve_positions(const ParticleSystem<double>& s, const VectorColumn<double>& start,
-                                                     VectorColumn<double>& x, VectorColumn<double>& v, double h) {
+                                                     VectorColumn<double>& x, VectorColumn<double>& v, double h,
+                                                     bool look) {
+  const double before = look ? violation(s, start, x) : 0;
   const MoleculeColumns columns = columns_of(s, start, &x, v);
   for_packs([&, task = task(h)](const MoleculeKernels& kernels, const MoleculePack& pack, MoleculeReport& report) {
     report = kernels.solve_positions(pack, columns, task);
   });
-  return solved();
+  Solved all = solved();
+  if (look && all.open.empty()) all.before = before, all.after = violation(s, start, x);
+  return all;
+}
+
+double MoleculeLanes::violation(const ParticleSystem<double>& s, const VectorColumn<double>& start,
+                                const VectorColumn<double>& x) const {
+  double worst = 0;
+  Index looks = 0;
+  const Index apart = 1 + std::ssize(molecules_) / bonds_to_look_at;
+  for (Index m = 0; m < std::ssize(molecules_); m += apart) {
+    const Molecule& molecule = molecules_[at(m)];
+    for (std::size_t k = 0; k < molecule.pairs.size(); ++k) {
+      const Index i = molecule.particles[at(molecule.pairs[k].first)];
+      const Index j = molecule.particles[at(molecule.pairs[k].second)];
+      Vec3<double> d = x[i] - x[j];
+      if (s.box().is_periodic()) d += s.box().minimum_image(Vec3<double>(start[i] - start[j]));
+      worst = std::max(worst, std::abs(norm2(d) / (molecule.lengths[k] * molecule.lengths[k]) - 1) / 2);
+      if (++looks == bonds_to_look_at) return worst;
+    }
+  }
+  return worst;
 }
 
 MoleculeLanes::Solved MoleculeLanes::project_velocities(ParticleSystem<double>& s, double h) {

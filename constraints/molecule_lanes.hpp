@@ -40,13 +40,13 @@ class MoleculeLanes {
 
   struct Solved {
     std::int64_t sweeps = 0;       ///< the most that a molecule needed
-    double before = 0, after = 0;  ///< the violation before and after these; 0: nobody has looked
+    double before = 0, after = 0;  ///< the violation before and after these; both 0: nobody has looked
     std::vector<Index> open = {};  ///< molecules that are not solved: they are left where they were
   };
   /// The position stage. @param start  positions before free motion  @param x  where it ends; in a periodic box what
-  /// particles have moved  @param h  its duration [time]
+  /// particles have moved  @param h  its duration [time]  @param look  finds violations, where kernels see none
   Solved solve_positions(const ParticleSystem<double>& s, const VectorColumn<double>& start, VectorColumn<double>& x,
-                         VectorColumn<double>& v, double h);
+                         VectorColumn<double>& v, double h, bool look);
   /// The velocity stage. @param h  as ConstraintStages::project_velocities
   Solved project_velocities(ParticleSystem<double>& s, double h);
 
@@ -102,6 +102,9 @@ class MoleculeLanes {
   template <class Work> void for_packs(const Work& work);
   MoleculeTask task(double h) const;
   Solved solved() const;
+  /// The largest relative violation of some bonds, not of all: @param start, x  as of a position stage
+  double violation(const ParticleSystem<double>& s, const VectorColumn<double>& start,
+                   const VectorColumn<double>& x) const;
 
   ConstraintOptions options_;
   std::vector<Molecule> molecules_;

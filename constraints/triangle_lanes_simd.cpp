@@ -175,7 +175,7 @@ MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, co
   }
   const Flags<P> idle = idle_lanes<P>(pack);
   const Flags<P> hard = but_not(either(exceeds(before, same<P>(hard_start)), exceeds(after, same<P>(settled))), idle);
-  const MoleculeReport report{.open = bits_of(hard), .sweeps = closed_form ? 1 : newton_steps};
+  const MoleculeReport report{.open = bits_of(hard), .sweeps = closed_form ? 0 : newton_steps};
   const double inverse_h = 1 / task.h;
   put<P>(pack, moved, either(hard, idle), slots, [&](int a) {
     return PositionRow{c.x[a], c.v[a], inverse_h, c.magic[a]};

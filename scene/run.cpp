@@ -300,6 +300,7 @@ class Runner {
     r.steps_made = ending_.steps_made;
     r.wall_s = ending_.wall_s;
     r.evaluations = sim.evaluations();
+    if (!scene().hamiltonian.constraints.empty()) r.solver = scene().hamiltonian.constraint_options.solver;
     if (const auto& encounter = r.evaluations.encounter) {
       r.warnings.push_back(warning_of(*encounter, scene().hamiltonian.splitting.name, sim.particles(), *scene().units));
     }

@@ -43,7 +43,8 @@ struct RunReport {
   std::int64_t steps_made = 0;        ///< in `wall_s`
   double wall_s = 0;                  ///< from the first step to the last
   Evaluations evaluations;
-  std::vector<CostBook::Entry> cost;  ///< seconds by part, the largest first; empty unless asked for
+  std::optional<ConstraintMethod> solver;  ///< of its constraints, where it has some
+  std::vector<CostBook::Entry> cost;       ///< seconds by part, the largest first; empty unless asked for
   std::vector<std::pair<std::string, MonitorReport>> monitors;
   std::filesystem::path trajectory, checkpoint;  ///< empty if there is none
 
