@@ -290,6 +290,19 @@ TEST_CASE("solvers whose stages do not see violations look at one stage in 64: t
             std::log1p(rounding) / static_cast<double>(made));
       for (int k = 0; k < 200; ++k) solver.project_velocities(s, 0.002), solver.advance_positions(s, 0.0005);
       REQUIRE(!solver.failure());
+      // One that goes on from there looks at the same stages.
+      ParticleSystem<double> other = s;
+      other.phase().opened = true;
+      ConstraintSolver<double> resumed(crowd.constraints);
+      resumed.bind(other);
+      resumed.restore(solver.work());
+      for (int k = 0; k < 100; ++k) {
+        solver.project_velocities(s, 0.002), solver.advance_positions(s, 0.0005);
+        resumed.project_velocities(other, 0.002), resumed.advance_positions(other, 0.0005);
+      }
+      REQUIRE(!solver.failure());
+      CHECK(resumed.work().measured == solver.work().measured);
+      CHECK(resumed.work().log == solver.work().log);
       CHECK(solver.work().measured > made);
       CHECK(solver.work().measured < solver.iterations() / 40);
     }
