@@ -72,10 +72,11 @@ template <class Real> Relabeled relabeled(int first, int second, int third, cons
   return {{first, second, third}, {even ? sign : -sign, 1, sign}};
 }
 
-/// The smallest rotation of a unit vector with m_3 > 0 onto the third axis.
+/// The smallest rotation of the direction of a vector with m_3 > 0 onto the third axis.
 template <class Real> Quaternion<Real> onto_third(const Vec3<Real>& m) {
   using std::sqrt;
-  const Real twice = Real(1) + m[2], scale = Real(1) / sqrt(m[0] * m[0] + m[1] * m[1] + twice * twice);
+  const Real across = m[0] * m[0] + m[1] * m[1], twice = Real(sqrt(across + m[2] * m[2])) + m[2];
+  const Real scale = Real(1) / sqrt(across + twice * twice);
   return Quaternion<Real>(twice * scale, m[1] * scale, -m[0] * scale, Real(0));
 }
 
@@ -95,7 +96,7 @@ Quaternion<Real> turn_symmetric(const Quaternion<Real>& q, const Vec3<Real>& spi
 template <class Real> struct FreeMotion {
   Real m, m1;                   ///< parameter of the elliptic functions and its complement
   Real lambda;                  ///< du/dt [1/time]
-  Real a1, a2, a3;              ///< amplitudes
+  Real a1, a2, a3;              ///< amplitudes, of an m of the size that was given
   Real ratio;                   ///< a2/a1, also where both are 0
   Real n, root;                 ///< characteristic of the third kind, and the root of n (1 - n)(n - m)
   Real precession;              ///< (I_3 - I_1) L/(I_1 I_3 lambda)
@@ -103,18 +104,20 @@ template <class Real> struct FreeMotion {
   Real sense;                   ///< -1 where the third axis has the smallest moment: m circles the other way
 };
 
-template <class Real> FreeMotion<Real> free_motion(const Vec3<Real>& I, const Vec3<Real>& m, const Real& length) {
+/// @param m  of any size that is not 0
+template <class Real>
+FreeMotion<Real> free_motion(const Vec3<Real>& I, const Vec3<Real>& m, const Real& size, const Real& length) {
   using std::sqrt;
   const Real d21 = I[1] - I[0], d31 = I[2] - I[0], d32 = I[2] - I[1];
   const Real p1 = m[0] * m[0], p2 = m[1] * m[1], p3 = m[2] * m[2];
-  const Real w1 = p2 * (d21 / I[1]) + p3 * (d31 / I[2]);  // 1 - 2 T I_1/L^2
+  const Real w1 = p2 * (d21 / I[1]) + p3 * (d31 / I[2]);  // (1 - 2 T I_1/L^2) |m|^2
   const Real w2 = p3 * (d32 / I[2]) - p1 * (d21 / I[0]);
   const Real w3 = p1 * (d31 / I[0]) + p2 * (d32 / I[1]);
   FreeMotion<Real> f;
   f.sense = d31 < Real(0) ? Real(-1) : Real(1);
   f.m = (d21 / d32) * (w3 / w1);
   f.m1 = (d31 / d32) * (w2 / w1);
-  f.lambda = length * sqrt((w1 / I[0]) * (d32 / I[1]) / I[2]);
+  f.lambda = length * (sqrt((w1 / I[0]) * (d32 / I[1]) / I[2]) / size);
   f.a1 = sqrt(I[0] * (w3 / d31));
   f.a2 = sqrt(I[1] * (w3 / d32));
   f.a3 = sqrt(I[2] * (w1 / d31));
@@ -178,10 +181,14 @@ template <class Real>
 Quaternion<Real> turn_asymmetric(const Quaternion<Real>& q, const Vec3<Real>& inertia, const Vec3<Real>& m,
                                  const Real& length, const Relabeled& labels, const Real& h) {
   using std::atan2, std::fabs, std::floor;
-  const Vec3<Real> I(inertia[labels.axis[0]], inertia[labels.axis[1]], inertia[labels.axis[2]]), start = labels.to(m);
-  const FreeMotion<Real> f = free_motion(I, start, length);
+  const Vec3<Real> I(inertia[labels.axis[0]], inertia[labels.axis[1]], inertia[labels.axis[2]]), unit = labels.to(m);
+  // What is the same in every step, as the amplitudes are, would be rounded the same way each time, and the energy
+  // would move one way: so m is of another length at each place of its path.
+  const Real size = Real(1.5) + Real(0.37) * unit[0] + Real(0.23) * unit[1] + Real(0.11) * unit[2];
+  const Vec3<Real> start = size * unit;
+  const FreeMotion<Real> f = free_motion(I, start, size, length);
   if (detail::DualOf<Real>::is && !(f.a1 > Real(0))) {
-    const Quaternion<Real> turn = turn_about_axis(I, start, length, h);
+    const Quaternion<Real> turn = turn_about_axis(I, unit, length, h);
     return quaternion_product(q, quaternion(turn[0], labels.back(vector_part(turn))));
   }
   Real rest = f.lambda * h, integral(0);  // of the third kind
@@ -207,7 +214,7 @@ Quaternion<Real> turn_asymmetric(const Quaternion<Real>& q, const Vec3<Real>& in
              f.sense * (atan2(f.root * sines, beside) + circled + half_turn * halves);
   const Real flip(odd ? -1 : 1);
   const Vec3<Real> stop(flip * f.a1 * end.cn, flip * f.sense * f.a2 * end.sn, f.a3 * end.dn);
-  give_slopes(psi, I, start, stop, length, h);
+  give_slopes<Real>(psi, I, unit, Vec3<Real>(stop / size), length, h);
   const Quaternion<Real> turn =
       quaternion_product(quaternion_product(conjugate(onto_third(start)), rotation(psi, 2)), onto_third(stop));
   return quaternion_product(q, quaternion(turn[0], labels.back(vector_part(turn))));

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace noether {
@@ -186,6 +188,55 @@ TEST_CASE("extreme bodies turn right, or not at all", "[integrators][free_rotor]
     CHECK(std::isnan(turn_exactly<double>(q, {nan, 1, 0}, {1, 2, 3}, 1).orientation.sum()));
     CHECK(std::isnan(turn_by_axes<double>(q, {nan, 1, 0}, {1, 2, 3}, 1, {0, 1, 2}).orientation.sum()));
   }
+}
+
+TEST_CASE("a hundred million turns by n steps are off by the root of n, and leave every bit of the spin",
+          "[integrators][free_rotor]") {
+  // Each step's rounding moves the energy by chance, and the rate with it: what it does to the angle at the end, which
+  // is the same for all n, grows as a random walk does. One step is off by the rounding of the angle, 6.7e8 rad.
+  std::mt19937 generator(5);
+  std::normal_distribution<double> normal;
+  const double total = 0x1.4p29;
+  const Vec3<double> inertia(2, 1, 2. / 3);
+  ParticleSystem<double> start(unit_system("reduced"));
+  Bodies kinds;
+  std::vector<Quaternion<Quad>> exact;
+  double turns = 0;
+  const int count = 100;
+  for (int k = 0; k < count; ++k) {
+    FreeBody b{inertia, {normal(generator), normal(generator), normal(generator)}, {}, total};
+    b.spin /= b.spin.norm();
+    for (int c = 0; c < 4; ++c) b.q[c] = normal(generator);
+    add_body(start, kinds, body_of_inertia("body", 1, inertia), {.orientation = b.q, .spin = b.spin});
+    b.q = start.column<BodyOrientation>()[k];
+    exact.push_back(in_quad(b, unit_quad(b.q), Quad(total)));
+    turns += std::sqrt(norm2(angular_velocity<double>(b.q, b.spin, inertia))) * total / (2 * std::acos(-1.0)) / count;
+  }
+  CHECK(turns > 1e8);
+  start.set_bodies(std::make_shared<const Bodies>(std::move(kinds)));
+  const auto error = [&](int steps) {
+    Simulation sim(start, compose(test::turning(ForceField<double>{}), schemes::verlet), total / steps);
+    REQUIRE(sim.run(steps).ok());
+    CHECK(sim.time() == total);
+    double squares = 0;
+    for (Index i = 0; i < count; ++i) {
+      CHECK(sim.particles().column<BodySpin>()[i] == start.column<BodySpin>()[i]);
+      const Quaternion<double> found = sim.particles().column<BodyOrientation>()[i];
+      const auto& q = exact[static_cast<std::size_t>(i)];
+      const Quaternion<Quad> wide = found.cast<Quad>();
+      const Quad cosine = wide[0] * q[0] + wide[1] * q[1] + wide[2] * q[2] + wide[3] * q[3];  // of half the angle
+      squares += static_cast<double>(Quad(8) * (Quad(1) - abs(cosine))) / count;
+    }
+    return std::sqrt(squares);
+  };
+  const double one = error(1), few = error(16), some = error(256), many = error(4096);
+  CAPTURE(one, few, some, many);
+  CHECK(one < 1e-15 * total);
+  CHECK(many < 1e-15 * total * 64);
+  // By least squares over the three factors of 16, each known to some 10 %.
+  const double slope = (3 * std::log2(many / one) + std::log2(some / few)) / 40;
+  CAPTURE(slope);
+  CHECK(std::abs(slope - 0.5) < 0.1);
 }
 
 TEST_CASE("turns axis by axis are a symmetric map of order 2", "[integrators][free_rotor]") {
