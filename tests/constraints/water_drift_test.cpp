@@ -129,10 +129,12 @@ TEST_CASE(
     "[constraints][nightly]") {
   const ForceField<double> forces = smooth_forces();
   const ParticleSystem<double> warm = warm_water(forces, {}, 2 * fs);
-  const Seen held = by_constraints(forces, warm, 2 * fs, 30 * ps), turning = by_turns(forces, warm, 2 * fs, 30 * ps);
+  // The bound is three errors of a slope over 80 ps, which was 3e-4; over 30 ps it was 8e-4, over a nanosecond 1e-5
+  // (docs/theory/constraints.md).
+  const Seen held = by_constraints(forces, warm, 2 * fs, 80 * ps), turning = by_turns(forces, warm, 2 * fs, 80 * ps);
   for (const Seen& one : {held, turning}) {
-    CHECK(one.energy.error < 1e-3);
-    CHECK(std::abs(one.energy.value) < 1e-3 + 3 * one.energy.error);
+    CHECK(one.energy.error < 5e-4);
+    CHECK(std::abs(one.energy.value) < 1e-3);
     CHECK(one.shadow.error < 1e-4);
     CHECK(std::abs(one.shadow.value) < 1e-3);
   }
