@@ -15,7 +15,7 @@ namespace {
 
 using namespace noether::test;
 
-constexpr double step = 0.002, edge = 2.8;  // [ps], [nm]; faces of the box cut molecules
+constexpr double two_fs = 0.002, edge = 2.8;  // [ps], [nm]; faces of the box cut molecules
 
 /// Solvers as they are where they leave as little as they can: a series of water takes many powers.
 std::vector<ConstraintOptions> tightest(const Molecule& molecule) {
@@ -39,7 +39,7 @@ AfterStep after_step_of(const Molecule& molecule, const ConstraintOptions& optio
   Crowd crowd(options, edge);
   for (int k = 0; k < 21; ++k) crowd.add(molecule, k);
   const KineticPotential<ForceField<double>, double, ConstraintSet> free(ForceField<double>(), crowd.constraints);
-  Simulation<double> sim(crowd.particles, compose(free, schemes::verlet), step);
+  Simulation<double> sim(crowd.particles, compose(free, schemes::verlet), two_fs);
   const Pressure& pressure = sim.every(1, Pressure{});
   const Outcome outcome = sim.run(1);
   if (!outcome.ok()) FAIL(to_text(outcome));
@@ -172,14 +172,14 @@ TEST_CASE("constraints of turning dumbbells have the virial - mu v^2 n n, n turn
     for (Index k = 0; k < 21; ++k) {
       const Vec3<double> v = std::as_const(s).velocities()[2 * k + 1] - std::as_const(s).velocities()[2 * k];
       const Vec3<double> r = std::as_const(s).positions()[2 * k + 1] - std::as_const(s).positions()[2 * k];
-      const double angle = steps * std::asin(step * v.norm() / 0.1);
+      const double angle = steps * std::asin(two_fs * v.norm() / 0.1);
       const Vec3<double> n =
           std::cos(angle) * s.box().minimum_image(r) / 0.1 + std::sin(angle) * Vec3<double>(v / v.norm());
       expected -= 12.0 / 13 * norm2(v) * n * n.transpose();
     }
     ConstraintSolver<double> solver(crowd.constraints);
     solver.bind(s);
-    for (int k = 0; k < steps; ++k) solver.advance_positions(s, step), solver.project_velocities(s, step);
+    for (int k = 0; k < steps; ++k) solver.advance_positions(s, two_fs), solver.project_velocities(s, two_fs);
     REQUIRE(!solver.failure());
     CAPTURE(info_of(options.solver).name);
     const bool loose = info_of(options.solver).end == SolverEnd::tolerance;
