@@ -144,6 +144,10 @@ Served served_by(const MethodInfo& info, const MethodClaims& claims) {
     if (claims.second_order_only) return {"q'' = -M^-1 grad U(q)", "it supports forces that know their secants"};
     return {"y' = J grad H(y)", "it supports forces of an energy of positions alone, and Hamiltonian systems"};
   }
+  if (claims.turns_only) {
+    return {"q'' = a(t, q) + q' x rate(t, q)",
+            "it supports all forces that do not depend on velocities, and magnetic fields, but no first-order system"};
+  }
   if (claims.positions_only) {
     return {"q'' = a(t, q)",
             "it supports forces that depend on positions and time, but not on velocities, and no first-order system"};

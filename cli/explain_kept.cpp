@@ -29,11 +29,15 @@ std::string lost_text(const Scene& scene, const char* symbol, bool ForceClaims::
 }  // namespace
 
 std::string kept_text(const Scene& scene, const IntegratorClaims& claims) {
-  if (!claims.energy_exact) return "";
-  if (scene.system) return "keeps E";
   const std::optional<MethodChoice>& own = scene.integrator.classical;
   const MethodClaims method = own ? make_method<double>(*own->info, own->options)->claims()
                                   : MethodClaims{.name = "", .keeps_angular_momentum = true};
+  const bool conserved = claims.energy && !claims.dissipative && !claims.time_dependent;
+  if (!claims.energy_exact && conserved && method.exact_degree > 2) {
+    return fmt::format("keeps E where it is a polynomial of degree {} or less", method.exact_degree);
+  }
+  if (!claims.energy_exact) return "";
+  if (scene.system) return "keeps E";
   std::vector<std::string> kept = {"E"}, lost;
   const auto tell = [&](const char* symbol, bool keeps, bool ForceClaims::*by_forces, bool by_method, bool box_loses) {
     if (keeps) {

@@ -8,7 +8,8 @@
 
 namespace noether {
 
-/// "keeps E and p; L not, because of henon_heiles"; empty where the energy is not kept at any step.
+/// "keeps E and p; L not, because of henon_heiles"; empty where the energy is not kept at any step, but that of
+/// polynomials by some methods.
 std::string kept_text(const Scene& scene, const IntegratorClaims& claims);
 
 /// Of bodies and of systems with an energy: whether `shadow_hamiltonian` can watch the run, or why not.

@@ -29,8 +29,10 @@ struct MethodClaims {
                                         ///< invariant
   bool second_order_only = false;       ///< serves q'' = a only
   bool positions_only = false;          ///< serves q'' = a(t, q) only, no velocity-dependent forces
+  bool turns_only = false;              ///< of velocity-dependent forces it serves those that turn velocities alone
   bool gravity_only = false;            ///< serves masses of no size that attract each other, and what acts beside that
   bool energy_exact = false;            ///< keeps the energy of every field that it serves to rounding, at any step
+  int exact_degree = 0;                 ///< keeps energies that are polynomials of at most this degree to rounding
   bool conservative_only = false;       ///< serves fields with an energy that is conserved, without velocity-dependent
                                         ///< forces of particles
   bool second_words = false;            ///< its state is `low_words` too

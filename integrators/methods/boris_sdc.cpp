@@ -42,7 +42,8 @@ BorisSdc<Real>::BorisSdc(const MethodInfo& info, const MethodOptions& options)
 
 template <class Real> MethodClaims BorisSdc<Real>::claims() const {
   const auto most = 2 * options_.nodes - 2, reached = 2 + 2 * ((options_.sweeps + 1) / 2);
-  return {.name = name_, .order = static_cast<int>(std::min(most, reached)), .second_order_only = true};
+  return {
+      .name = name_, .order = static_cast<int>(std::min(most, reached)), .second_order_only = true, .turns_only = true};
 }
 
 template <class Real> void BorisSdc<Real>::bind(const VectorField<Real>& f) {

@@ -218,6 +218,9 @@ TEST_CASE("explain says what a method exact in energy keeps, and what does not l
             "\nkeeps E; p not, because of henon_heiles; L not, because of henon_heiles\n"));
   CHECK(has(with("gonzalez", " --set hamiltonian.force.0.type=henon_heiles"),
             "\nkeeps E; p not, because of henon_heiles; L not, because of henon_heiles, the method\n"));
+  CHECK(has(with("hbvm_4_2"), "\nkeeps E where it is a polynomial of degree 4 or less\n"));
+  CHECK(has(with("hbvm_5_3"), "\nkeeps E where it is a polynomial of degree 3 or less\n"));
+  CHECK_FALSE(has(with("hbvm_2_2"), "\nkeeps "));  // every Runge-Kutta method of Gauss keeps those of degree 2
   CHECK_FALSE(has(with("verlet"), "\nkeeps "));
 }
 
@@ -403,6 +406,8 @@ TEST_CASE("describe says of a method what it serves, as it claims itself", "[cli
        "gravity of point masses");
   says("simo_tarnow_wong", "forces that know their secants", "q'' = -M^-1 grad U(q)");
   says("gonzalez", "forces of an energy of positions alone, and Hamiltonian systems", "y' = J grad H(y)");
+  says("boris_sdc", "all forces that do not depend on velocities, and magnetic fields, but no first-order system",
+       "q'' = a(t, q) + q' x rate(t, q)");
   says("newmark", "all forces, also those that depend on velocities, but no first-order system", "q'' = a(t, q, q')");
 }
 
