@@ -6,6 +6,7 @@
 #include "numbers/suggest.hpp"
 #include "scene/check.hpp"
 #include "scene/default_watches.hpp"
+#include "scene/gyration.hpp"
 #include "scene/key_paths.hpp"
 #include "scene/minimize.hpp"
 #include "scene/read_constraints.hpp"
@@ -57,6 +58,7 @@ class SceneReader {
           read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles, scene_.warnings);
       read_hamiltonian(table(top, "hamiltonian"));
       context_.gravitates = scene_.hamiltonian.is_keplerian();
+      context_.gyration = first_gyration(scene_, start_time(table(top, "integrator")));
       if (const SceneValue* start = top.find("minimize")) {
         scene_.effective.put("minimize", read_minimize(context_, *start, scene_));
       }

@@ -238,6 +238,22 @@ std::string example_step(const UnitSystem& units) {
   return unit == "1" ? "0.01" : unit == "ps" ? "\"1 fs\"" : "\"1 " + unit + "\"";
 }
 
+/// A step that is told by how long a charge takes to turn, "0.05 gyration"; empty for a time.
+std::optional<double> gyration_step(const TableReader& reader, const SceneValue& step) {
+  constexpr std::string_view word = "gyration";
+  const std::string* text = step.get<std::string>();
+  if (text == nullptr || !text->ends_with(word)) return {};
+  const std::optional<double>& period = reader.context().gyration;
+  if (!period) {
+    reader.fail(&step, "step",
+                fmt::format("step = {} needs a charge that a magnetic field turns where the run begins; give a time",
+                            to_text(step)));
+  }
+  std::string number = text->substr(0, text->size() - word.size());
+  number.erase(number.find_last_not_of(' ') + 1);
+  return reader.number(SceneValue::of(number.empty() ? "1" : number, step.line), "step", "1") * *period;
+}
+
 void read_step(TableReader& reader, SceneIntegrator& made, SceneValue& effective) {
   const SceneValue* step = reader.find("step");
   if (step == nullptr && made.adaptive()) return;
@@ -245,7 +261,8 @@ void read_step(TableReader& reader, SceneIntegrator& made, SceneValue& effective
     reader.fail(nullptr, "step",
                 fmt::format("[integrator] has no step; give one, such as {}", example_step(*reader.context().units)));
   }
-  made.step = reader.number(*step, "step", "time");
+  const std::optional<double> turning = gyration_step(reader, *step);
+  made.step = turning ? *turning : reader.number(*step, "step", "time");
   made.step_text = to_text(*step);
   if (made.step == 0)
     reader.fail("step", fmt::format("a step of {} is not valid; a time other than 0 is expected", made.step_text));

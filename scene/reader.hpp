@@ -31,6 +31,7 @@ struct SceneContext {
   /// `hamiltonian.G`, or that of a force where it stands there alone: the default of every field of that name.
   std::optional<SceneValue> G = {};
   double start_time = 0;                 ///< what the clock of the run shows at its first step [time]
+  std::optional<double> gyration = {};   ///< how long the first charge that turns takes for it at the start [time]
   bool of_system = false;                ///< it has a system of first order in the place of a Hamiltonian
   bool gravitates = false;               ///< the Hamiltonian, as far as it has been read, has a constant of gravitation
   std::vector<ColumnInfo> columns = {};  ///< that the Hamiltonian and the forces of the scene declare

@@ -41,7 +41,8 @@ BorisSdc<Real>::BorisSdc(const MethodInfo& info, const MethodOptions& options)
 }
 
 template <class Real> MethodClaims BorisSdc<Real>::claims() const {
-  const auto most = 2 * options_.nodes - 2, reached = 2 + 2 * ((options_.sweeps + 1) / 2);
+  const auto most = 2 * options_.nodes - 2, passes = turns_ ? (options_.sweeps + 1) / 2 : options_.sweeps;
+  const auto reached = 2 + 2 * passes;
   return {
       .name = name_, .order = static_cast<int>(std::min(most, reached)), .second_order_only = true, .turns_only = true};
 }
@@ -160,7 +161,7 @@ std::span<const MethodInfo> methods::boris_sdc_list() {
        .source = "WinkelSpeckRuprecht2015",
        .family = "collocation",
        .options = {&own_options<BorisSdcOptions>},
-       .order = 6,
+       .order = 8,
        .evaluations = 17,
        .make = make_boris_sdc<double>,
        .make_quad = make_boris_sdc<Quad>},
