@@ -235,7 +235,8 @@ SceneTable integrator(const Parts& parts) {
       {"method", "text", "1", "", "a name of `noether list methods`, or a word of letters such as \"BAOAB\"",
        "\"verlet\""},
       {"step", "number", "time", "",
-       "length of a step, below 0 to go back in time; methods that choose their steps take it as the first one"},
+       "length of a step, below 0 to go back in time, or part of a turn of the first charge, \"0.05 gyration\"; "
+       "methods that choose their steps take it as the first one"},
       {"until", "number", "time", "",
        "the time at which the run ends, at the first whole step at or after it; or steps"},
       {"steps", "whole number", "1", "", "how many steps the run has, in place of until"},
