@@ -110,17 +110,19 @@ FreeMotion<Real> free_motion(const Vec3<Real>& I, const Vec3<Real>& m, const Rea
   using std::sqrt;
   const Real d21 = I[1] - I[0], d31 = I[2] - I[0], d32 = I[2] - I[1];
   const Real p1 = m[0] * m[0], p2 = m[1] * m[1], p3 = m[2] * m[2];
-  const Real w1 = p2 * (d21 / I[1]) + p3 * (d31 / I[2]);  // (1 - 2 T I_1/L^2) |m|^2
-  const Real w2 = p3 * (d32 / I[2]) - p1 * (d21 / I[0]);
-  const Real w3 = p1 * (d31 / I[0]) + p2 * (d32 / I[1]);
+  // The same rounded ratios throughout, so that sn^2 + cn^2 is not off 1 the same way each time.
+  const Real c21 = d21 / I[1], c31 = d31 / I[0], c32 = d32 / I[1], e31 = d31 / I[2];
+  const Real w1 = p2 * c21 + p3 * e31, w3 = p1 * c31 + p2 * c32;  // w1 = (1 - 2 T I_1/L^2) |m|^2
+  const Real below = w1 * c32;
   FreeMotion<Real> f;
   f.sense = d31 < Real(0) ? Real(-1) : Real(1);
-  f.m = (d21 / d32) * (w3 / w1);
-  f.m1 = (d31 / d32) * (w2 / w1);
-  f.lambda = length * (sqrt((w1 / I[0]) * (d32 / I[1]) / I[2]) / size);
-  f.a1 = sqrt(I[0] * (w3 / d31));
-  f.a2 = sqrt(I[1] * (w3 / d32));
-  f.a3 = sqrt(I[2] * (w1 / d31));
+  f.m = w3 * c21 / below;
+  f.m1 = (p3 * e31 * c32 - p1 * c31 * c21) / below;
+  if (f.m1 < Real(0)) f.m1 = Real(0);  // on the separatrix, by rounding
+  f.lambda = length * (sqrt((w1 / I[0]) * c32 / I[2]) / size);
+  f.a1 = sqrt(w3 / c31);
+  f.a2 = sqrt(w3 / c32);
+  f.a3 = sqrt(w1 / e31);
   f.ratio = sqrt((I[1] / I[0]) * (d31 / d32));
   f.n = -(I[2] / I[0]) * (d21 / d32);
   const Real above = (I[1] / I[0]) * (d31 / d32);  // 1 - n
@@ -134,13 +136,19 @@ FreeMotion<Real> free_motion(const Vec3<Real>& I, const Vec3<Real>& m, const Rea
   return f;
 }
 
-/// The functions at u + v.
+/// The functions at u + v, as they are at u and what v adds to them: a short step is rounded once.
+/// @param v  within a quarter period: cn is not below 0
 template <class Real>
-JacobiFunctions<Real> at_sum(const JacobiFunctions<Real>& u, const JacobiFunctions<Real>& v, const Real& m) {
+JacobiFunctions<Real> at_sum(const JacobiFunctions<Real>& u, const JacobiFunctions<Real>& v, const Real& m,
+                             const Real& m1) {
+  const Real s2 = v.sn * v.sn;
   // 1 - m sn^2 sn'^2 without its cancellation near the separatrix.
-  const Real both = m * u.sn * v.sn, below = v.cn * v.cn + v.sn * v.sn * (u.dn * u.dn);
-  return {(u.sn * v.cn * v.dn + v.sn * u.cn * u.dn) / below, (u.cn * v.cn - u.sn * v.sn * u.dn * v.dn) / below,
-          (u.dn * v.dn - both * u.cn * v.cn) / below};
+  const Real w2 = u.dn * u.dn, both = m * u.sn * v.sn, below = v.cn * v.cn + s2 * w2;
+  const Real by_one = Real(1) / (Real(1) + v.cn);                                 // (1 - cn)/s2
+  const Real by_dn = v.dn + v.cn > Real(0) ? Real(m1 / (v.dn + v.cn)) : Real(0);  // (dn - cn)/s2
+  return {u.sn + (s2 * (v.cn * by_dn - w2) * u.sn + v.sn * u.cn * u.dn) / below,
+          u.cn + (s2 * (v.cn * by_one - w2) * u.cn - u.sn * v.sn * u.dn * v.dn) / below,
+          u.dn + (s2 * (v.cn * by_dn + v.dn * by_one - w2) * u.dn - both * u.cn * v.cn) / below};
 }
 
 /// The turn of a body about an axis, to first order in what its spin has beside that axis: the derivatives there, where
@@ -204,7 +212,7 @@ Quaternion<Real> turn_asymmetric(const Quaternion<Real>& q, const Vec3<Real>& in
       integral = Real(2) * halves * complete_third_elliptic(quarter, f.n, f.m1);
     }
   }
-  const JacobiFunctions<Real> step = jacobi_functions(rest, f.m1), end = at_sum(f.start, step, f.m);
+  const JacobiFunctions<Real> step = jacobi_functions(rest, f.m1), end = at_sum(f.start, step, f.m, f.m1);
   integral += third_elliptic(rest, f.n, step);
   const Real sines = f.start.sn * step.sn * end.sn;
   const Real beside = Real(1) - f.n * end.sn * end.sn + f.n * f.start.sn * step.sn * end.cn * end.dn;

@@ -6,6 +6,7 @@
 #include "tests/support/rigid_bodies.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -161,6 +162,24 @@ TEST_CASE("extreme bodies turn right, or not at all", "[integrators][free_rotor]
       CHECK(error(b) < 3e-15);
     }
   }
+  SECTION("on the separatrix, where rounding may cross it") {
+    std::mt19937 generator(1);
+    std::uniform_real_distribution<double> uniform;
+    for (int k = 0; k < 4000; ++k) {
+      const double middle = 1 + uniform(generator), high = middle + uniform(generator);
+      const std::array<double, 3> inertia = {1, middle, high};
+      const std::array<double, 3> spin = {std::sqrt((high - middle) / high / (middle - 1)) * (k % 2 == 0 ? 1 : -1),
+                                          uniform(generator), 1};
+      FreeBody b{{}, {}, {1, 0, 0, 0}, (k % 7 == 0 ? 700 : 2) * uniform(generator)};
+      for (int c = 0; c < 3; ++c) {  // in every order of axes, right-handed or not
+        const auto from = static_cast<std::size_t>(k % 3 < 2 ? (c + k) % 3 : 2 - c);
+        b.inertia[c] = inertia[from];
+        b.spin[c] = spin[from];
+      }
+      const Quaternion<double> turned = turn_exactly<double>(b.q, b.spin, b.inertia, b.h).orientation;
+      CHECK(std::abs(norm_defect(turned)) < 1e-15);
+    }
+  }
   SECTION("long beside the separatrix: where it is cannot be told, but it is somewhere") {
     for (const double h : {20., 60., 2000.}) {
       const Quaternion<double> turned =
@@ -237,6 +256,28 @@ TEST_CASE("a hundred million turns by n steps are off by the root of n, and leav
   const double slope = (3 * std::log2(many / one) + std::log2(some / few)) / 40;
   CAPTURE(slope);
   CHECK(std::abs(slope - 0.5) < 0.1);
+}
+
+TEST_CASE("the energy of a free turn moves by chance, not one way", "[integrators][free_rotor]") {
+  // A walk of n roundings of 1e-16 to 2e-16; 5e-18 in the same sense each time would come to 12e-16 sqrt(n) here.
+  std::mt19937 generator(3);
+  std::normal_distribution<double> normal;
+  const Vec3<double> inertia(1.3, 2.1, 0.9);
+  const int steps = 60'000, count = 8;
+  for (const double h : {0.01, 0.1, 1.}) {
+    double squares = 0;
+    for (int k = 0; k < count; ++k) {
+      const Vec3<double> spin = Vec3<double>(normal(generator), normal(generator), normal(generator)).normalized();
+      Quaternion<double> q(normal(generator), normal(generator), normal(generator), normal(generator));
+      q /= q.norm();
+      const auto energy = [&] { return turning_energy<double>(spin_in_body<double>(q, spin), inertia); };
+      const double before = energy();
+      for (int n = 0; n < steps; ++n) q = turn_exactly<double>(q, spin, inertia, h).orientation;
+      squares += std::pow(energy() / before - 1, 2) / count;
+    }
+    CAPTURE(h, std::sqrt(squares / steps) * 1e16);
+    CHECK(std::sqrt(squares / steps) < 4e-16);
+  }
 }
 
 TEST_CASE("turns axis by axis are a symmetric map of order 2", "[integrators][free_rotor]") {
