@@ -111,7 +111,7 @@ template <class Real> void BorisSdc<Real>::push(std::size_t m, const Vector<Real
 }
 
 /// f of a node, with the velocity of `here_`.
-template <class Real> void BorisSdc<Real>::act(Node& node) const {
+template <class Real> void BorisSdc<Real>::finish(Node& node) const {
   node.f = node.a;
   if (!turns_) return;
   const Index all = node.a.size(), n = all / 3;
@@ -125,16 +125,20 @@ template <class Real> void BorisSdc<Real>::act(Node& node) const {
 template <class Real> StepResult BorisSdc<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
   const Real step(h);
   here_ = y;
-  f.acceleration_and_rate(t, here_, nodes_[0].a, nodes_[0].rate);
-  act(nodes_[0]);
+  const auto act_at = [&](const Real& time, Node& node) {
+    if (turns_) return f.acceleration_and_rate(time, here_, node.a, node.rate);
+    f.acceleration(time, here_, node.a);
+  };
+  act_at(t, nodes_[0]);
+  finish(nodes_[0]);
   for (Node& node : nodes_) node.f_before.setZero();
   for (std::int64_t pass = 0; pass <= options_.sweeps; ++pass) {
     for (std::size_t m = 1; m < nodes_.size(); ++m) {
       Node& node = nodes_[m];
       place(m, y, step);
-      f.acceleration_and_rate(t + c_[m] * step, here_, node.a, node.rate);
+      act_at(t + c_[m] * step, node);
       push(m, y, step);
-      act(node);
+      finish(node);
     }
     for (Node& node : nodes_) node.f_before = node.f;
   }

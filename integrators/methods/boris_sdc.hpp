@@ -61,7 +61,7 @@ template <class Real> class BorisSdc final : public Method<Real> {
 
   void place(std::size_t m, const Vector<Real>& y, const Real& h);
   void push(std::size_t m, const Vector<Real>& y, const Real& h);
-  void act(Node& node) const;
+  void finish(Node& node) const;
 
   std::string_view name_;
   BorisSdcOptions options_;

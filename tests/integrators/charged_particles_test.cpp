@@ -301,11 +301,10 @@ TEST_CASE("monitors see fields at the time of the look, and gamma to all digits"
   // gamma = 1e6 in a uniform field: what is kept is kept to rounding.
   const UniformElectromagnetic field{.B = {0, 0, 1e3}};
   const ChargeMotion motion{.fields = {AnyForce<double>(InField(field))}, .c = 1.0};
-  Simulation fast(one_charge({0, 0, 0}, {0.9999999999995, 0, 0}),
+  Simulation fast(one_charge({0, 1e3, 0}, {0.9999999999995, 0, 0}),  // about the origin: u/(q B) = 1e3
                   compose(in_field(field, {.relativistic = Relativistic::higuera_cary, .c = 1.0}), schemes::verlet_aba),
                   1);
   CanonicalMomentum around;
-  around.center = {0, -1e3, 0};  // where it gyrates about: u/(q B) = 1e3
   MagneticMoment moment;
   around.watch(motion);
   moment.watch(motion);
