@@ -116,6 +116,14 @@ Candidate candidate(const Scene& scene, std::string_view name) {
   throw Error(why);
 }
 
+namespace {
+/// Whether a scene's own method is `verlet` over a basic word that begins with drifts, by either of its names.
+bool is_verlet_of_drifts(const Scene& scene) {
+  const std::string& own = scene.integrator.method;
+  return (own == "verlet" || own == "verlet_aba") && scene.hamiltonian.splitting.claims().basic == "ABA";
+}
+}  // namespace
+
 std::vector<Candidate> default_opponents(const Scene& scene) {
   std::vector<std::string> names = {scene.integrator.method};
   const bool split = may_be_joined(scene);
@@ -124,7 +132,10 @@ std::vector<Candidate> default_opponents(const Scene& scene) {
                                "trapezoidal", "sdirk_4", "rodas_4", "rodas_5p", "bdf", "galerkin_gauss_4", "magnus_6"});
   } else {
     if (split) names.insert(names.end(), {"aba_10_6_4", "verlet_aba", "verlet@" + plain(scene).info.name});
-    if (!split) names.insert(names.end(), {"verlet", "yoshida_4"});
+    if (!split) {
+      if (!is_verlet_of_drifts(scene)) names.emplace_back("verlet");
+      names.emplace_back("yoshida_4");
+    }
     const std::string plainly = split || is_plain(scene) ? "@" + plain(scene).info.name : "";
     for (const char* name : {"blanes_moan_s6", "srkn14a", "kahan_li_8_s17"}) names.push_back(name + plainly);
     const bool liquid = scene.particles.box().is_periodic() || scene.particles.size() > most_bodies;

@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace noether::test {
 namespace {
@@ -232,6 +234,19 @@ TEST_CASE("a wisdom_holman scene is compared with whole-gravity kicks too", "[co
   CHECK(c.rows[1].position_error_max.value() < 1);
   CHECK(c.rows[0].position_error_max.value() < 1e-4 * c.rows[1].position_error_max.value());
   CHECK(c.scene_end.value() == 365250000);
+}
+
+TEST_CASE("a method that has two names over a Hamiltonian is compared once", "[compare]") {
+  const auto opponents = [](const std::vector<std::string>& sets) {
+    std::vector<std::string> labels;
+    const Scene banana = load_scene(NOETHER_SOURCE_DIR "/examples/tokamak_banana/scene.toml", standard_parts(), sets);
+    for (const Candidate& one : default_opponents(banana)) labels.push_back(one.label);
+    return std::pair(std::count(labels.begin(), labels.end(), "verlet_aba"),
+                     std::count(labels.begin(), labels.end(), "verlet"));
+  };
+  CHECK(opponents({}) == std::pair(1L, 0L));  // the basic word of Boris's kicks is A B A
+  CHECK(opponents({"integrator.method=verlet"}) == std::pair(0L, 1L));
+  CHECK(opponents({"hamiltonian.rotation=exact"}) == std::pair(1L, 1L));
 }
 
 /// Fewest force evaluations of a method's rows whose energy error stays below a bound.
