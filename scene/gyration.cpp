@@ -11,8 +11,13 @@
 namespace noether {
 
 std::vector<double> gyration_rates(const Scene& scene, double time) {
+  const auto gyrates = [](const SceneForce& force) { return force.force.claims().gyrates; };
+  const auto any = [&](const std::vector<SceneForce>& forces) {
+    return std::any_of(forces.begin(), forces.end(), gyrates);
+  };
+  if (!any(scene.hamiltonian.forces) && !any(scene.hamiltonian.splitting.own))
+    return {};  // most scenes: nothing is copied
   const ForceField<double> fields = fields_among(forces_of(scene));
-  if (fields.terms().empty()) return {};
   ParticleSystem<double> s = scene.particles;
   s.clock() = Clock<double>::free(time);
   VectorColumn<double> a(s.size()), turns(s.size());
