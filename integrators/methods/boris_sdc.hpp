@@ -17,9 +17,10 @@ struct BorisSdcOptions {
     return part<BorisSdcOptions>(
         "boris_sdc", "nodes and sweeps of deferred corrections",
         field<&BorisSdcOptions::nodes>("nodes", "1", "Lobatto nodes in a step, 3 to 9: at most order 2 nodes - 2"),
-        field<&BorisSdcOptions::sweeps>("sweeps", "1",
-                                        "corrections of Boris's steps between them, 1 to 32; each gives two orders, in "
-                                        "magnetic fields two of them do"));
+        field<&BorisSdcOptions::sweeps>(
+            "sweeps", "1",
+            "corrections of Boris's steps between them, 1 to 32; each adds two orders, in a "
+            "magnetic field the first, the third and so on"));
   }
   /// @throws Error  out of these ranges
   void check() const;
@@ -33,9 +34,9 @@ struct BorisSdcOptions {
 ///
 /// with f of the sweep before, f' of this one, steps d_m between the nodes c_m, the collocation matrix Q, and X_ml what
 /// velocity Verlet between nodes makes of f_l. Only the velocity in f_m' is unknown: a turn by Cayley's formula. The
-/// first pass has f = 0, and is Boris's step. Each sweep gives two orders, two sweeps where a field turns velocities,
-/// up to 2 nodes - 2. It is neither symplectic nor reversible until the sweeps have converged. `claims` of the order
-/// are those of the field once it is bound.
+/// first pass has f = 0, and is Boris's step. Each sweep adds two orders, every other one where a field turns
+/// velocities, up to 2 nodes - 2. It is neither symplectic nor reversible until the sweeps have converged. `claims` of
+/// the order are those of the field once it is bound.
 /// @cost 1 + (sweeps + 1)(nodes - 1) evaluations
 /// @source WinkelSpeckRuprecht2015
 template <class Real> class BorisSdc final : public Method<Real> {
