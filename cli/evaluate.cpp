@@ -1,4 +1,5 @@
 #include "cli/commands.hpp"
+#include "cli/scene_reports.hpp"
 
 #include "engine/bodies.hpp"
 #include "numbers/error.hpp"
@@ -113,17 +114,20 @@ int evaluate_scene(const EvaluateArguments& given, const Parts& parts) {
   const bool failed = !result.outcome.ok();
   if (failed) fmt::print(stderr, "{}\n", escaped(to_text(result.outcome)));
   if (!given.forces.empty() && !failed) write_forces(given.forces, scene, result);
-  const std::vector<std::string> warnings = warnings_of(scene);
   if (given.json) {
-    fmt::print("{}\n", json_of(result, warnings).text());
+    fmt::print("{}\n", evaluation_json(scene, result));
   } else {
     print_text(scene, result);
-    for (const std::string& warning : warnings) fmt::print("warning: {}\n", warning);
+    for (const std::string& warning : warnings_of(scene)) fmt::print("warning: {}\n", warning);
   }
   return exit_code(result.outcome);
 }
 
 }  // namespace
+
+std::string evaluation_json(const Scene& scene, const Evaluation& found) {
+  return json_of(found, warnings_of(scene)).text();
+}
 
 void add_evaluate_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto given = std::make_shared<EvaluateArguments>();

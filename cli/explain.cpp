@@ -3,6 +3,7 @@
 #include "cli/explain_kept.hpp"
 #include "cli/gyration_text.hpp"
 #include "cli/method_text.hpp"
+#include "cli/scene_reports.hpp"
 
 #include "integrators/composition.hpp"
 #include "integrators/stiffness.hpp"
@@ -508,6 +509,8 @@ Json json_of(const Scene& scene, const Explanation& e) {
 
 }  // namespace
 
+std::string explanation_json(const Scene& scene) { return json_of(scene, explained(scene)).text(); }
+
 void add_explain_command(CLI::App& app, const Parts& parts, int& exit_code) {
   struct Arguments {
     std::string scene;
@@ -525,11 +528,10 @@ void add_explain_command(CLI::App& app, const Parts& parts, int& exit_code) {
   command->callback([given, &parts, &exit_code] {
     const Scene scene = load_scene(given->scene, parts, given->sets);
     tell_notes(scene.notes);
-    const Explanation e = explained(scene);
     if (given->json) {
-      fmt::print("{}\n", json_of(scene, e).text());
+      fmt::print("{}\n", explanation_json(scene));
     } else {
-      print_text(scene, e, given->all);
+      print_text(scene, explained(scene), given->all);
     }
     exit_code = 0;
   });

@@ -23,6 +23,7 @@ MAY_SEE = {
     "scene": BELOW_SCENE | {"scene"},
     "study": LIBRARIES,
     "cli": LIBRARIES | {"cli"},
+    "python": LIBRARIES | {"cli", "python"},
     "examples": LIBRARIES | {"examples"},
     "bench": LIBRARIES | {"bench"},
     "tests": LIBRARIES | {"cli", "examples", "tests"},

@@ -4,7 +4,7 @@ import pathlib
 import re
 import sys
 
-ROOMS = ["numbers", "engine", "neighbors", "monitors", "forces", "constraints", "io", "integrators", "scene", "study", "cli", "examples", "bench", "tests"]
+ROOMS = ["numbers", "engine", "neighbors", "monitors", "forces", "constraints", "io", "integrators", "scene", "study", "cli", "python", "examples", "bench", "tests"]
 
 
 def cpp_files(root):
