@@ -27,7 +27,8 @@ namespace nb = nanobind;
 using ForceAddress = double (*)(std::int64_t n, std::int64_t stride, double t, const double* x, const double* v,
                                 const double* m, double* a, void* user);
 
-/// One function. The first exception that it raises is kept; from then on it is not called again.
+/// One function. The first exception that it raises is kept for who has started the run; a run that falls back to the last
+/// whole step calls it again.
 class Callable {
  public:
   /// @param object  called as Python has it, or kept alive beside its `address`
@@ -41,16 +42,15 @@ class Callable {
   PyObject* object() const { return object_; }
   /// Calls `use(function)` while it holds Python's lock, and keeps what is raised. @return whether all went well
   template <class Use> bool call(const Use& use) {
-    if (failed_) return false;
     const nb::gil_scoped_acquire locked;
     try {
       use(nb::handle(object_));
+      return true;
     } catch (...) {
-      failed_ = std::current_exception();
+      if (!failed_) failed_ = std::current_exception();
     }
-    return !failed_;
+    return false;
   }
-  bool failed() const { return static_cast<bool>(failed_); }
   /// Raises what was kept, once; the function may then be called again.
   void raise_again();
   /// Lets go of the object: Python's collector has found a cycle.

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -111,7 +112,7 @@ class HeldSimulation {
     NamedFrom from;
     from.parts = &known_parts();
     from.units = units_;
-    from.particles = &sim_.particles();
+    from.particles = &particles();
     const Cadence cadence = cadence_of(when);
     detail::attach(sim_, cadence, make_monitor(name, value_of(values, name), from, constraints_));
   }
@@ -161,10 +162,11 @@ class HeldSimulation {
     sim_.on_progress({});
     sim_.stop_on(nullptr);
     if (!failed) sim_.for_each_monitor([](const std::string&, AnyMonitor<double>& monitor) { monitor.flush(); });
-    for (const auto& function : functions_) function->raise_again();
+    raise_again();
     if (failed) std::rethrow_exception(failed);
     if (signal) throw std::move(*signal);
-    static_cast<void>(sim_.particles());  // views that are held show where the run stands
+    running_ = false;
+    static_cast<void>(particles());  // views that are held show where the run stands
     nb::dict told;
     told["outcome"] = std::string(name(outcome.kind));
     told["text"] = to_text(outcome);
@@ -192,9 +194,24 @@ class HeldSimulation {
       change(vectors_of(s.positions().component(0), s.size(), s.positions().stride(), self, true),
              vectors_of(s.velocities().component(0), s.size(), s.velocities().stride(), self, true),
              numbers_of(s.masses().data(), s.size(), self, true));
+      if (!s.positions().all().allFinite() || !s.velocities().all().allFinite() || !s.masses().all().allFinite()) {
+        throw Error("the edit left a position, a velocity or a mass that is not finite; the state is as it was before");
+      }
       s.wrap();
     });
-    static_cast<void>(sim_.particles());
+    running_ = false;
+    static_cast<void>(particles());
+  }
+
+  /// The particles where the run stands. Settling them may take a force: what that raises comes out.
+  const ParticleSystem<double>& particles() {
+    expect_at_rest();
+    const ParticleSystem<double>& settled = sim_.particles();
+    raise_again();
+    return settled;
+  }
+  void raise_again() {
+    for (const auto& function : functions_) function->raise_again();
   }
 
   double time_of(const std::string& text) const { return parse_quantity(text, dimensions::time, *units_); }
@@ -336,41 +353,36 @@ void bind_simulations(nb::module_& m) {
       .def_prop_ro("step", [](Held& held) { return held.sim().step(); })
       .def_prop_ro("time", [](Held& held) { return held.sim().time(); })
       .def_prop_ro("seconds", [](Held& held) { return held.sim().seconds(); })
-      .def_prop_ro("names", [](Held& held) { return held.sim().particles().names(); })
+      .def_prop_ro("names", [](Held& held) { return held.particles().names(); })
       .def_prop_ro("units", [](Held& held) { return std::string(held.units().name); })
       .def_prop_ro("digest",
                    [](Held& held) {
-                     held.expect_at_rest();
-                     return io::digest(held.sim().particles());
+                     return io::digest(held.particles());
                    })
       .def_prop_ro("positions",
                    [](nb::handle self) {
                      auto& held = nb::cast<Held&>(self);
-                     held.expect_at_rest();
-                     const auto& x = held.sim().particles().positions();
+                     const auto& x = held.particles().positions();
                      return vectors_of(x.component(0), x.size(), x.stride(), self);
                    })
       .def_prop_ro("velocities",
                    [](nb::handle self) {
                      auto& held = nb::cast<Held&>(self);
-                     held.expect_at_rest();
-                     const auto& v = held.sim().particles().velocities();
+                     const auto& v = held.particles().velocities();
                      return vectors_of(v.component(0), v.size(), v.stride(), self);
                    })
       .def_prop_ro("masses",
                    [](nb::handle self) {
                      auto& held = nb::cast<Held&>(self);
-                     held.expect_at_rest();
-                     const auto& mass = held.sim().particles().masses();
+                     const auto& mass = held.particles().masses();
                      return numbers_of(mass.data(), mass.size(), self);
                    })
       .def_prop_ro("variables",
                    [](Held& held) {
-                     held.expect_at_rest();
-                     const auto& y = held.sim().particles().variables();
+                     const auto& y = held.particles().variables();
                      return array_of(y, {y.size()});
                    })
-      .def_prop_ro("variable_names", [](Held& held) { return held.sim().particles().variable_names(); })
+      .def_prop_ro("variable_names", [](Held& held) { return held.particles().variable_names(); })
       .def_prop_ro("force_evaluations", [](Held& held) { return held.sim().evaluations().force; })
       .def_prop_ro("monitors",
                    [](const Held& held) {

@@ -64,8 +64,12 @@ def _put_unit(value, unit):
 
 
 def number_of(value, dimension, units):
-    """The number of a quantity in the units of a scene."""
+    """The number of a quantity in the units of a scene; of a list, a list."""
     value = plain(value)
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, list):
+        return [number_of(one, dimension, units) for one in value]
     if isinstance(value, str):
         return _core.quantity(value, dimension, units)
     return float(value)
