@@ -27,8 +27,8 @@ namespace nb = nanobind;
 using ForceAddress = double (*)(std::int64_t n, std::int64_t stride, double t, const double* x, const double* v,
                                 const double* m, double* a, void* user);
 
-/// One function. The first exception that it raises is kept for who has started the run; a run that falls back to the last
-/// whole step calls it again.
+/// One function. The first exception that it raises is kept for who has started the run; a run that falls back to the
+/// last whole step calls it again.
 class Callable {
  public:
   /// @param object  called as Python has it, or kept alive beside its `address`

@@ -3,6 +3,7 @@
 #include "cli/comma_lists.hpp"
 #include "cli/scene_reports.hpp"
 #include "numbers/quantity.hpp"
+#include "python/module/user_constraint.hpp"
 #include "python/module/values.hpp"
 #include "scene/evaluate.hpp"
 #include "scene/json.hpp"
@@ -211,6 +212,7 @@ const Parts& known_parts() {
     Parts parts = standard_parts();
     parts.add_force<UserForce>();
     parts.add_monitor<UserMonitor>();
+    add_user_constraints(parts);
     return parts;
   }();
   return all;
@@ -218,7 +220,15 @@ const Parts& known_parts() {
 
 HeldScene::HeldScene(nb::object source, const std::vector<std::string>& sets,
                      std::vector<std::shared_ptr<Callable>> functions)
-    : functions_(std::move(functions)), run_(std::make_unique<SceneRun>(read(source, sets))) {}
+    : functions_(std::move(functions)) {
+  try {
+    run_ = std::make_unique<SceneRun>(read(source, sets));
+  } catch (...) {
+    raise_again();  // what a function has raised says more than what the scene makes of it
+    throw;
+  }
+  raise_again();
+}
 
 void HeldScene::raise_again() {
   for (const auto& function : functions_) function->raise_again();

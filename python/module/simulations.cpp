@@ -355,10 +355,7 @@ void bind_simulations(nb::module_& m) {
       .def_prop_ro("seconds", [](Held& held) { return held.sim().seconds(); })
       .def_prop_ro("names", [](Held& held) { return held.particles().names(); })
       .def_prop_ro("units", [](Held& held) { return std::string(held.units().name); })
-      .def_prop_ro("digest",
-                   [](Held& held) {
-                     return io::digest(held.particles());
-                   })
+      .def_prop_ro("digest", [](Held& held) { return io::digest(held.particles()); })
       .def_prop_ro("positions",
                    [](nb::handle self) {
                      auto& held = nb::cast<Held&>(self);

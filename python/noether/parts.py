@@ -19,7 +19,8 @@ KINDS = {
     "thermostats": "thermostat", "systems": "system", "builders": "builder", "decorators": "decorator",
     "monitors": "monitor", "writers": "writer", "stops": "stop", "starts": "start",
 }
-_OWN = ("user_force", "user_monitor")  # what functions in Python become; nobody asks for them by name
+_OWN = ("user_force", "user_monitor", "user_constraint", "user_constraint_of_pairs", "user_constraint_of_triples",
+        "user_constraint_of_groups")  # what functions in Python become; nobody asks for them by name
 
 
 def class_name(name):
@@ -76,7 +77,7 @@ def _document(info):
         default = f"; default {field['default']}" if field["default"] is not None else ""
         choice = "; one of " + ", ".join(field["choices"]) if field["choices"] else ""
         lines.append(f"{_python_name(field['name'])} : {field['kind']}{unit}{need}")
-        lines.append(f"    {field['help']}{default}{choice}")
+        lines.append("    " + (field["help"] + default + choice).lstrip("; "))
     if info.get("quantities"):
         lines += ["", "It tells " + info["quantities"] + "."]
     if info.get("source"):

@@ -119,11 +119,42 @@ class Simulation:
         self._fields.append(parts.as_part(field, "field", "fields").tree(self._units))
         return self
 
-    def add_constraint(self, constraint):
-        """Adds constraints of one kind: one of `nt.constraints`."""
+    def add_constraint(self, constraint, particles=None, *, scale=1.0, **solver):
+        """Adds constraints of one kind: one of `nt.constraints`, or a function of your own.
+
+        A function takes the positions of the particles that it ties, shape (particles, 3), and returns a number that stays
+        0. Its derivatives are exact: positions are dual numbers (`noether.duals`), so write it with arithmetic and NumPy's
+        functions. `particles` are their names: one to four, or a list of such tuples for as many constraints. `scale` is
+        what the function's values are small beside. It costs some ten microseconds a call.
+
+        solver, tolerance, iterations : as of every constraint
+        """
         self._expect_not_begun("add_constraint")
+        if callable(constraint) and not isinstance(constraint, type):
+            self._constraints.append({**self._own_constraint(constraint, particles, scale), **solver})
+            return self
+        if particles is not None or solver:
+            raise TypeError("particles and solvers of a constraint of nt.constraints are its own keywords, such as "
+                            "nt.Distance(pairs=[['a', 'b']])")
         self._constraints.append(parts.as_part(constraint, "constraint", "constraints").tree(self._units))
         return self
+
+    def _own_constraint(self, function, particles, scale):
+        if particles is None:
+            raise TypeError("a constraint of your own needs particles, such as particles=['a', 'b']")
+        if isinstance(particles, str):
+            particles = [particles]
+        tuples = [list(one) for one in particles] if not all(isinstance(one, str) for one in particles) else [list(particles)]
+        sizes = sorted({len(one) for one in tuples})
+        if len(sizes) != 1 or not 1 <= sizes[0] <= 4:
+            raise ValueError(f"a constraint of your own ties one to four particles, the same number each time; particles = "
+                             f"{particles!r} has {', '.join(map(str, sizes))}")
+        made = _function_of(function)
+        self._functions.append(made)
+        key, name = {1: ("bodies", "user_constraint"), 2: ("pairs", "user_constraint_of_pairs"),
+                     3: ("triples", "user_constraint_of_triples"), 4: ("groups", "user_constraint_of_groups")}[sizes[0]]
+        return {"type": name, "function": made.id, "scale": scale,
+                key: [one[0] for one in tuples] if sizes[0] == 1 else tuples}
 
     def add_decorator(self, decorator):
         """Puts something around the method: one of `nt.decorators`, such as a projection."""

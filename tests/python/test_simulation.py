@@ -210,6 +210,49 @@ def test_a_force_cannot_touch_the_run_that_calls_it(two_bodies):
         sim.run(1)
 
 
+def pendulum(constrain):
+    bodies = nt.Particles()
+    bodies.add("bob", m=1, x=[0.6, 0, -0.8], v=[0, 1, 0])
+    sim = nt.Simulation(bodies, method="yoshida_4", step=0.02)
+    sim.add_force(nt.UniformField(acceleration=[0, 0, -1]))
+    constrain(sim)
+    sim.every(1, nt.Energy())
+    sim.run(200)
+    return sim
+
+
+def test_a_constraint_in_python():
+    built_in = pendulum(lambda sim: sim.add_constraint(nt.OnSphere(bodies=["bob"], radius=1)))
+    own = pendulum(lambda sim: sim.add_constraint(lambda x: (x[0] @ x[0] - 1) / 2, ["bob"]))
+    assert abs(own.positions - built_in.positions).max() < 1e-13
+    rooted = pendulum(lambda sim: sim.add_constraint(lambda x: numpy.sqrt(x[0, 0]**2 + x[0, 1]**2 + x[0, 2]**2) - 1, "bob"))
+    assert abs(rooted.positions - built_in.positions).max() < 1e-12
+    assert own.monitors["energy"]["worst"] < 1e-6
+
+
+def test_a_constraint_that_raises():
+    import math
+
+    with pytest.raises(TypeError, match="NumPy's functions, not those of math"):
+        pendulum(lambda sim: sim.add_constraint(lambda x: math.sqrt(x[0, 0]**2 + x[0, 1]**2 + x[0, 2]**2) - 1, "bob"))
+    with pytest.raises(ValueError, match="one to four particles"):
+        pendulum(lambda sim: sim.add_constraint(lambda x: 0.0, ["bob"] * 5))
+
+
+def test_dual_numbers():
+    from noether.duals import Dual
+
+    x = Dual(Dual(0.7, [1.0]), [Dual(1.0, [0.0])])
+    for f, d, dd in [(lambda x: numpy.sin(x) * x, lambda x: numpy.cos(x) * x + numpy.sin(x), lambda x: 2 * numpy.cos(x) - numpy.sin(x) * x),
+                     (lambda x: 1 / (1 + x**2), lambda x: -2 * x / (1 + x**2)**2, lambda x: (6 * x**2 - 2) / (1 + x**2)**3),
+                     (lambda x: numpy.exp(2 * x), lambda x: 2 * numpy.exp(2 * x), lambda x: 4 * numpy.exp(2 * x)),
+                     (lambda x: numpy.arctan2(x, 2.0), lambda x: 2 / (4 + x**2), lambda x: -4 * x / (4 + x**2)**2),
+                     (lambda x: numpy.sqrt(x), lambda x: 0.5 * x**-0.5, lambda x: -0.25 * x**-1.5)]:
+        y = f(numpy.array([x], dtype=object))[0]
+        assert abs(y.value.value - f(0.7)) < 1e-15
+        assert abs(y.slopes[0].value - d(0.7)) < 1e-14 and abs(y.slopes[0].slopes[0] - dd(0.7)) < 1e-13
+
+
 # ---- lifetimes ------------------------------------------------------------------------------------------------------
 
 
