@@ -250,9 +250,10 @@ class Runner {
 
   Outcome advance(Simulation<double>& sim) const {
     std::optional<StopOnSignals> signals;
-    if (options_.handle_signals) sim.stop_on(signals.emplace().flag());
+    sim.stop_on(options_.handle_signals ? signals.emplace().flag() : options_.stop);
     ProgressLine line(options_.progress);
     line.attach(sim, scene().integrator.start, scene().units->time);
+    if (options_.tell) sim.on_progress(options_.tell);
     return ends_in_time() ? sim.run_until(*scene().integrator.until) : sim.run(target() - sim.step());
   }
 

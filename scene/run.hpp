@@ -6,7 +6,9 @@
 #include "scene/output_folder.hpp"
 #include "scene/scene.hpp"
 
+#include <atomic>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,6 +26,9 @@ struct RunOptions {
   double checkpoint_wall = 300;  ///< seconds between checkpoints
   /// Level of the lane kernels, set for the whole process; default: that of a run gone on with, else the highest.
   std::optional<SimdLevel> simd = {};
+  /// Called about ten times a second instead of showing a line; for programs and other languages.
+  std::function<void(const Progress&)> tell = {};
+  const std::atomic<bool>* stop = nullptr;  ///< ends the run after its step, where signals are not handled here
 };
 
 /// Everything a run has to say at its end.

@@ -3,6 +3,7 @@
 #include "cli/comma_lists.hpp"
 #include "cli/scene_reports.hpp"
 #include "numbers/quantity.hpp"
+#include "python/module/signal_watch.hpp"
 #include "python/module/user_constraint.hpp"
 #include "python/module/values.hpp"
 #include "scene/evaluate.hpp"
@@ -39,12 +40,6 @@ SceneRun read(nb::handle source, const std::vector<std::string>& sets) {
   return load_run(file, known_parts(), sets);
 }
 
-/// Whether this thread is the one to which Python gives signals.
-bool in_main_thread() {
-  const nb::module_ threading = nb::module_::import_("threading");
-  return threading.attr("current_thread")().is(threading.attr("main_thread")());
-}
-
 /// Calls `tell(row, rows, share, what)` now and then; signals are looked for meanwhile.
 TellShare share_teller(nb::handle tell) {
   if (tell.is_none()) return {};
@@ -56,13 +51,16 @@ TellShare share_teller(nb::handle tell) {
 }
 
 nb::object run_scene(HeldScene& held, const std::string& out, const std::string& existing, bool cost,
-                     double checkpoint_wall) {
+                     double checkpoint_wall, nb::object tell) {
   RunOptions options;
   options.out = out;
   options.existing = existing == "resume" ? Existing::resume : existing == "fresh" ? Existing::fresh : Existing::keep;
   options.cost = cost;
   options.checkpoint_wall = checkpoint_wall;
-  options.handle_signals = in_main_thread();
+  options.handle_signals = false;
+  SignalWatch watch(tell);
+  options.stop = watch.flag();
+  options.tell = [&watch](const Progress& progress) { watch.look(progress); };
   std::string json, text;
   std::exception_ptr failed;
   {
@@ -77,6 +75,7 @@ nb::object run_scene(HeldScene& held, const std::string& out, const std::string&
   }
   held.raise_again();
   if (failed) std::rethrow_exception(failed);
+  watch.raise_again();
   return nb::make_tuple(from_json(json), text);
 }
 
@@ -276,7 +275,8 @@ void bind_scenes(nb::module_& m) {
                      const auto& mass = nb::cast<HeldScene&>(self).scene().particles.masses();
                      return numbers_of(mass.data(), mass.size(), self);
                    })
-      .def("run", &run_scene, nb::arg("out"), nb::arg("existing"), nb::arg("cost"), nb::arg("checkpoint_wall"))
+      .def("run", &run_scene, nb::arg("out"), nb::arg("existing"), nb::arg("cost"), nb::arg("checkpoint_wall"),
+           nb::arg("tell").none())
       .def("compare", &compare_scene, nb::arg("methods"), nb::arg("steps"), nb::arg("tolerances"),
            nb::arg("until").none(), nb::arg("repeats"), nb::arg("budget"), nb::arg("truth_budget"), nb::arg("out"),
            nb::arg("tell").none())

@@ -4,6 +4,7 @@
 #include "monitors/monitors.hpp"
 #include "numbers/quantity.hpp"
 #include "python/module/scenes.hpp"
+#include "python/module/signal_watch.hpp"
 #include "python/module/values.hpp"
 #include "scene/named_parts.hpp"
 #include "scene/read_integrator.hpp"
@@ -15,7 +16,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <atomic>
 #include <map>
 #include <optional>
 #include <utility>
@@ -137,19 +137,9 @@ class HeldSimulation {
     expect_at_rest();
     const Running running(*this);
     std::exception_ptr failed;
-    std::optional<nb::python_error> signal;
-    stop_ = false;
-    sim_.stop_on(&stop_);
-    sim_.on_progress([&](const Progress& progress) {
-      const nb::gil_scoped_acquire locked;
-      try {
-        if (PyErr_CheckSignals() != 0) throw nb::python_error();
-        if (!tell.is_none()) tell(progress.step, progress.time, progress.seconds);
-      } catch (nb::python_error& error) {
-        if (!signal) signal.emplace(std::move(error));
-        stop_ = true;
-      }
-    });
+    SignalWatch watch(std::move(tell));
+    sim_.stop_on(watch.flag());
+    sim_.on_progress([&](const Progress& progress) { watch.look(progress); });
     Outcome outcome;
     {
       const nb::gil_scoped_release unlocked;
@@ -164,7 +154,7 @@ class HeldSimulation {
     if (!failed) sim_.for_each_monitor([](const std::string&, AnyMonitor<double>& monitor) { monitor.flush(); });
     raise_again();
     if (failed) std::rethrow_exception(failed);
-    if (signal) throw std::move(*signal);
+    watch.raise_again();
     running_ = false;
     static_cast<void>(particles());  // views that are held show where the run stands
     nb::dict told;
@@ -250,7 +240,6 @@ class HeldSimulation {
   std::shared_ptr<Records> records_ = std::make_shared<Records>();
   std::shared_ptr<Movie> movie_ = std::make_shared<Movie>();
   Simulation<double> sim_;
-  std::atomic<bool> stop_ = false;
   bool running_ = false;
 };
 

@@ -103,15 +103,18 @@ class Scene:
     warnings = property(lambda self: self._held.warnings)
     notes = property(lambda self: self._held.notes)
 
-    def run(self, *, out=None, existing="keep", cost=False, checkpoint_wall=300.0):
+    def run(self, *, out=None, existing="keep", cost=False, checkpoint_wall=300.0, progress=None):
         """Runs it to its end, as `noether run` does: see `nt.run`."""
         if existing not in ("keep", "resume", "fresh"):
             raise ValueError(f"existing = {existing!r}; one of 'keep', 'resume', 'fresh' is expected")
-        told, text = self._read().run("" if out is None else os.fspath(out), existing, bool(cost), float(checkpoint_wall))
-        report = reports.Report(told, text)
-        if report.outcome == "interrupted":
-            raise KeyboardInterrupt(text)
-        return report
+        from .progress import Progress
+
+        length = self.tree["integrator"]
+        until = length.get("until")
+        time = None if until is None else abs(quantities.number_of(until, "time", self.units))
+        with Progress(progress, steps=length.get("steps"), time=time, unit=_core.unit_names(self.units)[2]) as tell:
+            return reports.Report(*self._read().run("" if out is None else os.fspath(out), existing, bool(cost),
+                                                    float(checkpoint_wall), tell))
 
     def compare(self, *, methods=(), steps=(), tolerances=(), until=None, repeats=3, budget=10.0, truth_budget=120.0,
                 out=None, progress=None):
@@ -145,7 +148,7 @@ class Scene:
         return f"<Scene: {self.title or 'untitled'}, {len(self.names)} particles in {self.units} units>"
 
 
-def run(scene, *, until=None, set=None, out=None, existing="keep", cost=False, checkpoint_wall=300.0):
+def run(scene, *, until=None, set=None, out=None, existing="keep", cost=False, checkpoint_wall=300.0, progress=None):
     """Runs a scene to its end, as `noether run` does, and returns a `Report`.
 
     scene : a file, the name of an example ("figure_eight"), a dict, a Scene or a Simulation
@@ -155,10 +158,13 @@ def run(scene, *, until=None, set=None, out=None, existing="keep", cost=False, c
     existing : what becomes of an earlier run there: "keep" (a finished one is moved, an unfinished one refused), "resume"
         or "fresh"
     cost : the report tells what each part has cost
+    progress : True shows a line (tqdm, where it is installed); a function is called as `f(step, time, seconds)`
 
+    Ctrl-C ends the run after a whole step, writes its checkpoint and raises KeyboardInterrupt; existing="resume" goes on.
     A run that fails is no exception: `report.ok` is False, and `report.outcome` tells why.
     """
-    return Scene(scene, set=set, until=until).run(out=out, existing=existing, cost=cost, checkpoint_wall=checkpoint_wall)
+    return Scene(scene, set=set, until=until).run(out=out, existing=existing, cost=cost, checkpoint_wall=checkpoint_wall,
+                                              progress=progress)
 
 
 def compare(scene, *, set=None, **options):

@@ -5,6 +5,7 @@ import warnings as _warnings
 import weakref
 
 from . import _core, parts, particles as _particles, quantities
+from .progress import Progress
 
 
 class RunWarning(UserWarning):
@@ -219,7 +220,9 @@ class Simulation:
             raise TypeError("run takes steps, or until; give one of the two")
         held = self._begin()
         end = None if until is None else quantities.number_of(until, "time", self._units)
-        with _Progress(progress, held, steps, end, self._units) as tell:
+        length = None if end is None else abs(end - held.time)
+        with Progress(progress, steps=steps, time=length, begin=(held.step, held.time),
+                      unit=_core.unit_names(self._units)[2]) as tell:
             outcome = Outcome(held.run(None if steps is None else int(steps), end, tell))
         if not outcome.ok:
             _warnings.warn(outcome.text, RunWarning, stacklevel=2)
@@ -458,45 +461,3 @@ class _Edit:
             x[:], v[:], m[:] = self.positions, self.velocities, self.masses
 
         self._held.edit(change)
-
-
-class _Progress:
-    """What is told while a run goes on."""
-
-    def __init__(self, wanted, held, steps, end, units):
-        self._wanted, self._held, self._bar, self._last = wanted, held, None, 0
-        self._steps, self._end, self._begin = steps, end, held.time
-        self._unit = _core.unit_names(units)[2]
-
-    def __enter__(self):
-        if callable(self._wanted):
-            return self._wanted
-        if not self._wanted:
-            return None
-        try:
-            from tqdm.auto import tqdm
-        except ImportError:
-            return self._line
-        self._first = self._held.step
-        total = self._steps if self._steps is not None else abs(self._end - self._begin)
-        self._bar = tqdm(total=total, unit="step" if self._steps is not None else self._unit, unit_scale=True)
-        return self._tell
-
-    def _tell(self, step, time, seconds):
-        done = step - self._first if self._steps is not None else abs(time - self._begin)
-        self._bar.update(done - self._last)
-        self._last = done
-
-    def _line(self, step, time, seconds):
-        import sys
-
-        print(f"\rstep {step}, time {time:g}", end="", file=sys.stderr, flush=True)
-
-    def __exit__(self, kind, value, trace):
-        if self._bar is not None:
-            self._tell(self._held.step, self._held.time, 0)
-            self._bar.close()
-        elif self._wanted is True:
-            import sys
-
-            print(file=sys.stderr)
