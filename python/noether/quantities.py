@@ -50,7 +50,8 @@ def with_units(value, dimension, units):
     value = plain(value)
     if units == "reduced" or dimension in ("1", ""):
         return value
-    return _put_unit(value, _core.unit_of(dimension, units))
+    # To the engine angles are numbers; a scene says their unit all the same, and here bare ones are radians.
+    return _put_unit(value, "rad" if dimension == "angle" else _core.unit_of(dimension, units))
 
 
 def _put_unit(value, unit):

@@ -81,16 +81,18 @@ class Frames:
 
     units = "reduced"
 
-    def elements(self, body, about=0):
-        """Osculating elements of a body in every frame: a dict of arrays a, e, inc, Omega, omega, M and P."""
+    def elements(self, body=None, about=0):
+        """Osculating elements of a body in every frame: a dict of arrays a, e, inc, Omega, omega, M, f, pomega, l, theta, P, n.
+
+        body : its place or name; a list or a slice of these gives arrays of shape (frames, bodies); default: all but the first
+        about : a body, a list of bodies (their barycenter), or "jacobi" (the barycenter of all bodies above)
+        """
         import numpy
 
         from .particles import elements_of
 
-        names = list(self.names)
-        body, about = [names.index(one) if isinstance(one, str) else one for one in (body, about)]
-        return elements_of(numpy.asarray(self.positions[:]), numpy.asarray(self.velocities[:]), self.masses, body, about,
-                           self.units)
+        return elements_of(numpy.asarray(self.positions[:]), numpy.asarray(self.velocities[:]), self.masses,
+                           slice(1, None) if body is None else body, about, self.units, names=self.names)
 
     def to_xarray(self):
         """The frames as an xarray Dataset with dimensions time, particle and axis."""

@@ -320,11 +320,14 @@ class Simulation:
 
         return MemoryFrames(self._begin(), self)
 
-    def elements(self, body, about=0):
-        """Osculating elements of a body about another one, now."""
-        names = self.names
-        place = [names.index(one) if isinstance(one, str) else one for one in (body, about)]
-        return _particles.elements_of(self.positions, self.velocities, self.masses, place[0], place[1], self._units)
+    @property
+    def particles(self):
+        """The particles where they stand now: `sim.particles["Jupiter"].e`, by place or name."""
+        return _particles.MovingBodies(self)
+
+    def elements(self, body=None, about=None):
+        """Osculating elements of a body, or of several, about another one, now: see `nt.particles.Bodies.elements`."""
+        return self.particles.elements(body, about)
 
     @property
     def scene(self):
