@@ -20,8 +20,8 @@ sim.record_frames(20)
 sim.run(until=20_000)
 
 print(sim.time, sim.particles["inner"].x)
-for body in sim.particles[1:]:
-    print(body.name, body.a, body.e)
+orbits = sim.elements(about="jacobi")
+print(orbits.a, orbits.e)
 
 plt.figure()
 plt.plot(sim.frames.time, sim.frames.elements("inner", about="jacobi").e)

@@ -19,8 +19,8 @@ class Body:
 
     name, mass (or m)
     x, v : position and velocity, three numbers each [length, velocity]
-    a, e, inc, Omega, omega, M, f, pomega, l, theta, P, n : osculating elements [length, 1, angle, time, 1/time], about what
-        the body was given about, or the first body; `elements(about)` has them about any other
+    a, e, inc, Omega, omega, M, f, pomega, l, theta, P, n : osculating elements [length, 1, angle, time, 1/time]; of
+        `Particles` about what the body was given about, of a run about the first body; `elements(about)` has them about others
 
     Those that were given to `Particles.add` can be set too: `bodies["Jupiter"].e = 0.1`.
     """
@@ -97,8 +97,8 @@ class Bodies:
         """Osculating elements of a body about another one, or of several: a dict, whose entries are attributes too.
 
         body : its place, its name or itself; a list or a slice of these gives arrays; default: all but the first
-        about : a body, a list of bodies (their barycenter), or "jacobi" (the barycenter of all bodies above); default: what
-            the body was given about, or the first body
+        about : a body, a list of bodies (their barycenter), or "jacobi" (the barycenter of all bodies above); default: for
+            `Particles` what the body was given about, for a run the first body
 
         a [length], e [1], inc, Omega, omega, M, f [angle], and what follows from them: pomega = Omega + omega,
         l = pomega + M, theta = pomega + f, P = 2 pi / n [time], n = sqrt(mu / |a|^3) [1/time], mu = G (M + m). Angles are in
