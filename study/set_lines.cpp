@@ -83,7 +83,7 @@ bool may_go(const Scene& scene, const std::string& key, const std::vector<std::s
 
 SetLines set_lines(const Scene& scene, const Candidate& who, const Setting& setting, double end) {
   SetLines result{.lines = wanted(scene, who, setting, end)};
-  if (!std::filesystem::exists(scene.file)) return result;
+  if (!std::filesystem::is_regular_file(scene.file)) return result;
   for (;;) {
     std::vector<std::string> all = scene.source.sets;
     all.insert(all.end(), result.lines.begin(), result.lines.end());

@@ -35,9 +35,10 @@ def solar_system(*, units="solar", frame="barycenter", **table):
 
 
 def outer_solar_system(*, units="solar", frame="barycenter", **table):
-    """The Sun with the inner planets' mass, Jupiter to Pluto, equatorial: Hairer, Lubich and Wanner (2006), table 2.2 of section I.2.
+    """The Sun with the inner planets' mass, Jupiter to Pluto, equatorial: 6 bodies.
 
-    The epoch is 1994 September 5 (JD 2449600.5); as given, the Sun rests at the origin. Keywords as of `solar_system`.
+    From Hairer, Lubich and Wanner (2006), table 2.2 of section I.2. The epoch is 1994 September 5 (JD 2449600.5); as given, the
+    Sun rests at the origin. Keywords as of `solar_system`.
     """
     return from_csv(_example_file("outer_solar_system", "outer_planets.csv"), units=units, frame=frame, **table)
 
@@ -121,7 +122,8 @@ def horizons(bodies, epoch, *, center="Sun", masses=None, save=None, units="sola
     masses : {"Ceres;": "9.38e20 kg"}: of bodies whose GM is not built in; 0 is a tracer
     save : a file for the answers: later runs read it, nt.bodies.from_horizons_table(save), and need no net
 
-    One request for each body, in the ecliptic of J2000; bodies are called as here. nt.Error for a name that Horizons does not know, with its answer.
+    One request for each body, in the ecliptic of J2000; bodies are called as here. nt.Error for a name that Horizons does not
+    know, with its answer.
     """
     day, rest = _julian_day(epoch)
     names = [bodies] if isinstance(bodies, (str, int)) else list(bodies)
@@ -324,8 +326,8 @@ def _ask_horizons(target, origin, jd, timeout):
         with urllib.request.urlopen(url, timeout=timeout) as answer:
             text = answer.read().decode("utf-8", "replace")
     except urllib.error.HTTPError as wrong:
-        raise _core.Error(f"Horizons refused {target!r}: HTTP {wrong.code}: {_first_lines(wrong.read().decode('utf-8', 'replace'))}") \
-            from None
+        told = _first_lines(wrong.read().decode("utf-8", "replace"))
+        raise _core.Error(f"Horizons refused {target!r}: HTTP {wrong.code}: {told}") from None
     except OSError as wrong:
         raise ConnectionError(f"JPL Horizons cannot be reached ({getattr(wrong, 'reason', wrong)}); without a net use "
                               "nt.bodies.solar_system(), or read a saved table with nt.bodies.from_horizons_table") from None

@@ -64,7 +64,8 @@ class Body:
         for vector, components in (("x", ("y", "z")), ("v", ("vx", "vy", "vz"))):
             if key in components:
                 raise AttributeError(f"a body has no {key!r}; {vector} has all three numbers: {vector}[{'xyz'.index(key[-1])}]")
-        raise AttributeError(f"a body has no {key!r}{parts._proposal(key, dict.fromkeys(('name', 'mass', 'x', 'v') + _ELEMENTS))}")
+        known = dict.fromkeys(("name", "mass", "x", "v") + _ELEMENTS)
+        raise AttributeError(f"a body has no {key!r}{parts._proposal(key, known)}")
 
     def __setattr__(self, key, value):
         if self.values is None:

@@ -102,7 +102,8 @@ def test_a_kernel_gives_what_jplephem_computes(kernel):
 
 
 def test_masses_are_those_that_the_engine_gives_to_tables_of_horizons(kernel):
-    assert nt.bodies.from_spk(kernel, 2451545, ["Jupiter"]).masses[0] == nt.bodies.from_horizons_table(TABLES / "plain.txt").masses[0]
+    table = nt.bodies.from_horizons_table(TABLES / "plain.txt")
+    assert nt.bodies.from_spk(kernel, 2451545, ["Jupiter"]).masses[0] == table.masses[0]
     GM = nt.bodies.from_spk(kernel, 2451545, ["Sun"], units="si").masses[0] * 6.6743e-11
     assert GM == pytest.approx(132712440041.27942e9, rel=1e-14)
 
@@ -119,10 +120,12 @@ def test_all_ways_to_tell_an_epoch_are_one(kernel):
 def test_the_ecliptic_is_turned_about_the_equinox(kernel):
     equatorial, ecliptic = nt.bodies.from_spk(kernel, 2451545), nt.bodies.from_spk(kernel, 2451545, axes="ecliptic")
     assert (equatorial.positions[:, 0] == ecliptic.positions[:, 0]).all()
-    np.testing.assert_allclose(np.linalg.norm(equatorial.velocities, axis=1), np.linalg.norm(ecliptic.velocities, axis=1), rtol=1e-14)
+    speeds = [np.linalg.norm(one.velocities, axis=1) for one in (equatorial, ecliptic)]
+    np.testing.assert_allclose(*speeds, rtol=1e-14)
     pole = np.cross(ecliptic.positions[1], ecliptic.positions[3])
     turned = np.cross(equatorial.positions[1], equatorial.positions[3])
-    assert pole[2] == pytest.approx(np.cos(np.radians(84381.448 / 3600)) * turned[2] - np.sin(np.radians(84381.448 / 3600)) * turned[1])
+    angle = np.radians(84381.448 / 3600)
+    assert pole[2] == pytest.approx(np.cos(angle) * turned[2] - np.sin(angle) * turned[1])
 
 
 def test_a_body_whose_mass_is_not_built_in_needs_one(kernel):

@@ -20,7 +20,8 @@ def one_orbit(units="reduced", m=0.0, **elements):
 @pytest.mark.parametrize("size", [{"a": 1.3}, {"P": 7.0}, {"q": 0.8}])
 @pytest.mark.parametrize("shape", [
     {"e": 0.2, "inc": 0.4, "Omega": 1.0, "omega": 2.0, "M": 0.7}, {"e": 0.2, "inc": 0.4, "Omega": 1.0, "pomega": 2.0, "l": 0.7},
-    {"e": 0.7, "inc": 2.4, "Omega": 4.0, "omega": 2.0, "f": 3.3}, {"e": 0.01, "inc": 0.1, "Omega": 3.0, "omega": 2.0, "theta": 1.0}])
+    {"e": 0.7, "inc": 2.4, "Omega": 4.0, "omega": 2.0, "f": 3.3},
+    {"e": 0.01, "inc": 0.1, "Omega": 3.0, "omega": 2.0, "theta": 1.0}])
 def test_elements_that_are_given_come_back(size, shape):
     body = one_orbit(**size, **shape)
     for key, value in {**{k: v for k, v in size.items() if k != "q"}, **shape}.items():

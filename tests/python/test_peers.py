@@ -23,9 +23,10 @@ def code_lines(path):
     """Lines with code: not blank, not a comment, not the document of the file."""
     text = path.read_text()
     first = ast.parse(text).body[0]
+    empty = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER)
     rows = set()
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type not in (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER):
+        if token.type not in empty:
             rows.update(range(token.start[0], token.end[0] + 1))
     return len(rows - set(range(first.lineno, first.end_lineno + 1)))
 
