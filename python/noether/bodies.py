@@ -79,7 +79,7 @@ def from_spk(file, epoch, bodies=None, *, masses=None, axes="equatorial", units=
     epoch : a Julian day (TDB) as a number or "JD 2451545", a date "2000-01-01 12:00" (TDB), or a Time of astropy
     bodies : names ("Sun", "Earth", "Io", ...) or numbers of NAIF; default: the Sun, the planets and the Moon. Jupiter is its
         barycenter with all its moons, as other planets but the Earth; with moons of its own in the list write its number, 599
-    masses : {"Ceres": "9.38e20 kg"}: of bodies whose GM is not built in, or in place of it
+    masses : {2000433: "6.69e15 kg"}: of bodies whose GM is not built in, or in place of it; 0 is a tracer
     axes : "equatorial", those of the kernel (ICRF), or "ecliptic", of J2000
     units : "solar" or "si"
 
@@ -119,7 +119,7 @@ def horizons(bodies, epoch, *, center="Sun", masses=None, save=None, units="sola
     epoch : as in `from_spk`
     center : the body at the origin, which becomes the first body, or "barycenter" of the Solar System (then the Sun has to
         be one of the bodies)
-    masses : {"Ceres;": "9.38e20 kg"}: of bodies whose GM is not built in; 0 is a tracer
+    masses : {"Eros;": "6.69e15 kg"}: of bodies whose GM is not built in; 0 is a tracer
     save : a file for the answers: later runs read it, nt.bodies.from_horizons_table(save), and need no net
 
     One request for each body, in the ecliptic of J2000; bodies are called as here. nt.Error for a name that Horizons does not

@@ -174,7 +174,7 @@ class Particles(Bodies):
         _core.unit_names(units)
         self.units = units
         self.table = {key: value for key, value in {"frame": frame, **table}.items() if value is not None}
-        self._bodies, self._held, self._in_source = [], None, None
+        self._bodies, self._held, self._in_source, self._numbered = [], None, None, 0
         known = parts.table_fields("[particles]")
         for key in self.table:
             if key not in known:
@@ -220,7 +220,8 @@ class Particles(Bodies):
             what = f"add({name!r})" if name else "add()"
             search = f", or take it from nt.bodies.horizons({name!r}, epoch)" if name else ""
             raise TypeError(f"{what} says nothing about the body; give its mass, and where it is: m=1, a=5.2{search}")
-        told = {"name": str(name) if name else f"body_{self._first_added() + len(self._bodies) + 1}",
+        self._numbered += 1  # of all that were ever added: no default name comes twice
+        told = {"name": str(name) if name else f"body_{self._first_added() + self._numbered}",
                 **self._told(name, self._place(values))}
         if "mass" not in told and "type" not in told:
             told["mass"] = quantities.with_units(0.0, "mass", self.units)
@@ -381,6 +382,16 @@ class Particles(Bodies):
         for place, body in enumerate(self._bodies):
             body.__dict__["_place"] = place
         self._held = None
+
+    def __getstate__(self):
+        # What the engine holds is made anew where it is wanted: copy.deepcopy and pickle work.
+        return {**self.__dict__, "_held": None}
+
+    def copy(self):
+        """Particles of their own, which may be changed."""
+        import copy
+
+        return copy.deepcopy(self)
 
     def __repr__(self):
         return f"<Particles: {len(self)} in {self.units} units>"

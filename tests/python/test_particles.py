@@ -147,6 +147,26 @@ def test_what_was_given_can_be_set():
         body.name = "other"
 
 
+def test_a_copy_goes_its_own_way_and_can_be_sent_to_another_process():
+    import pickle
+
+    bodies = nt.Particles()
+    bodies.add("star", m=1)
+    bodies.add("planet", m=1e-3, a=1, e=0.1)
+    other, sent = bodies.copy(), pickle.loads(pickle.dumps(bodies))
+    other["planet"].e = 0.5
+    assert bodies["planet"].e == pytest.approx(0.1) and other["planet"].e == pytest.approx(0.5)
+    assert (sent.positions == bodies.positions).all() and sent["planet"].a == bodies["planet"].a
+
+
+def test_default_names_do_not_come_twice():
+    bodies = nt.Particles()
+    for _ in range(3):
+        bodies.add(m=1)
+    del bodies["body_1"]
+    assert bodies.add(m=1, x=1).name == "body_4" and bodies["body_2"].index == 0
+
+
 def test_columns_of_forces_do_not_matter_to_a_look_at_the_start():
     bodies = nt.Particles(units="solar")
     bodies.add("star", m=1, r="1 Rsun", love_number=0.03)
