@@ -4,6 +4,7 @@ REBOUND itself is not needed here: only its simulation is looked at, of version 
 """
 
 import math
+import re
 import warnings
 
 from . import _core, parts
@@ -169,7 +170,8 @@ def _method_of(sim):
                               "nt.rebound.particles(sim)")
         return "verlet_aba", {"corrector": int(setting("corrector", 0)) or None}, wisdom_holman("democratic")
     if name == "saba":
-        kind = setting("type", "1").replace(",", "_").strip("()")
+        # H_8_4_4 and CM_2 of version 5 are h(8,4,4) and cm2 of version 4
+        kind = re.sub("^(C[ML]|H)_?", r"\1_", re.sub("[(),]+", "_", setting("type", "1")).strip("_"))
         kind = "1" if kind == "DEFAULT" else kind
         if kind.startswith("CM_"):
             return _SABA[kind[3:]], {"kernel": "modified"}, wisdom_holman()

@@ -144,7 +144,9 @@ def test_version_4_names_its_settings_otherwise():
     assert ours.tree()["particles"]["body"][1]["name"] == "hash_4217"
     assert ours.tree()["hamiltonian"]["coordinates"] == "democratic"
     assert ours.tree()["integrator"] == {"method": "verlet_aba", "step": 0.01, "corrector": 11, "kernel": "lazy"}
-    assert nt.from_rebound(stand_in(integrator="saba")).tree()["integrator"]["method"] == "aba_10_6_4"
+    for kind, method in (("(10,6,4)", "aba_10_6_4"), ("h(8,4,4)", "abah_8_4_4"), ("cm2", "saba_2"), ("3", "saba_3")):
+        saba = stand_in(integrator="saba", ri_saba=types.SimpleNamespace(type=kind))
+        assert nt.from_rebound(saba).tree()["integrator"]["method"] == method
     assert nt.from_rebound(stand_in(integrator="ias15")).tree()["integrator"]["adaptive"] is False
 
 
