@@ -147,7 +147,7 @@ void UserMonitor::watch(const ConstraintSet& /*constraints*/) {
 void UserMonitor::observe(const Snapshot<double>& now) {
   const ParticleSystem<double>& s = now.state();
   values_.assign(names.size(), 0);
-  callable_->call([&](nb::handle call) {
+  const bool fine = callable_->call([&](nb::handle call) {
     const nb::object none = nb::none();
     const Index n = s.size();
     const nb::object told = call(s.time(), vectors_of(s.positions().component(0), n, s.positions().stride(), none),
@@ -165,6 +165,7 @@ void UserMonitor::observe(const Snapshot<double>& now) {
     }
     values_ = numbers;
   });
+  if (!fine) throw Error("the monitor of one's own raised an exception");  // which comes out instead of this
 }
 
 std::vector<Series> UserMonitor::series() const {
