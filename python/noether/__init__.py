@@ -34,10 +34,10 @@ _HOMES = {
     "Scene": "scenes", "run": "scenes", "compare": "scenes", "advise": "scenes", "stability": "scenes", "explain": "scenes",
     "evaluate": "scenes", "example": "scenes", "examples": "scenes", "Report": "reports",
     "verify": "files", "convert": "files", "info": "files", "view": "files", "open_run": "reports",
-    "from_rebound": "rebound",
+    "from_rebound": "rebound", "force_signature": "functions",
 }
 _MODULES = ("bodies", "plots", "files", "reports", "rebound", "quantities", "parts", "particles", "scenes", "simulation",
-            "viewer")
+            "viewer", "functions")
 
 
 def __getattr__(name):
