@@ -67,6 +67,13 @@ def convert(file, out, **options):
 
 
 def view(run, out=None):
-    """A page that shows a run in a browser, with sliders: the path of the page. In a notebook use `nt.viewer.show`."""
-    told, _ = _ask("view", run, *(["--out", out] if out is not None else []))
-    return told.get("file") or told.get("page") or out
+    """A page that plays a run in a browser: the path of the page, which is beside the run unless `out` says where.
+
+    run : a Report, a RunFile, or the path of a run.h5. In a notebook use `nt.viewer.show`, which takes simulations too.
+    """
+    from .reports import Report, RunFile
+
+    if isinstance(run, Report):
+        run = run.run
+    told, _ = _ask("view", run.path if isinstance(run, RunFile) else run, *(["--out", out] if out is not None else []))
+    return told["file"]
