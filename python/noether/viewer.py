@@ -38,7 +38,8 @@ def page(run, out=None, *, frames=None, every=None, **options):
 def show(run, *, height=480, open=False, frames=None, every=None, **options):
     """Plays a run: in a notebook below its cell; elsewhere it returns the path of the page, and opens it in a browser if told.
 
-    In notebooks with anywidget this is a `Viewer`, whose `frame` can be read and set; without, a frame with the page.
+    In notebooks with anywidget this is a widget, whose `moment` (0 is the start, 1 the end) can be read and set; without, a
+    frame with the page.
 
     height : of the picture, in pixels
     open : outside of notebooks: whether a browser shows the page
@@ -171,7 +172,7 @@ class _Inline:
 
 
 # The widget is the page in a frame of its own, so that neither style nor keys of the notebook and the page mix. What the
-# slider of the page shows and `frame` say the same.
+# slider of the page shows and `moment` say the same.
 _SCRIPT = """
 function render({ model, el }) {
   const frame = document.createElement("iframe");
@@ -182,17 +183,17 @@ function render({ model, el }) {
   const slider = () => frame.contentDocument && frame.contentDocument.getElementById("slider");
   const go = () => {
     const own = slider();
-    if (!own || Math.abs(Number(own.value) - model.get("frame")) < 1e-9) return;
-    own.value = model.get("frame");
+    if (!own || Math.abs(Number(own.value) - model.get("moment")) < 1e-9) return;
+    own.value = model.get("moment");
     own.dispatchEvent(new Event("input"));
   };
   frame.addEventListener("load", () => {
     const own = slider();
-    if (own) own.addEventListener("change", () => { model.set("frame", Number(own.value)); model.save_changes(); });
+    if (own) own.addEventListener("change", () => { model.set("moment", Number(own.value)); model.save_changes(); });
   });
   model.on("change:height", size);
   model.on("change:page", fill);
-  model.on("change:frame", go);
+  model.on("change:moment", go);
   size();
   fill();
   el.appendChild(frame);
@@ -203,17 +204,17 @@ export default { render };
 
 @functools.lru_cache(maxsize=None)
 def viewer_class():
-    """The widget: `page` (its text), `height` in pixels, `frame` that is shown. @raise ImportError without anywidget"""
+    """The widget: `page` (its text), `height` in pixels, `moment` that is shown. @raise ImportError without anywidget"""
     import anywidget
     import traitlets
 
     class Viewer(anywidget.AnyWidget):
-        """A run that plays in a notebook; `frame` says which moment, and can be set."""
+        """A run that plays in a notebook; `moment` is what is shown, from 0 (the start) to 1 (the end), and can be set."""
 
         _esm = _SCRIPT
         page = traitlets.Unicode().tag(sync=True)
         height = traitlets.Int(480).tag(sync=True)
-        frame = traitlets.Float(0.0).tag(sync=True)
+        moment = traitlets.Float(0.0).tag(sync=True)
 
         def __repr__(self):
             return "<a run that plays in a notebook>"

@@ -80,7 +80,7 @@ def test_in_notebooks_it_is_a_widget(eight, monkeypatch):
     pytest.importorskip("anywidget")
     monkeypatch.setattr(nt.viewer, "_in_notebook", lambda: True)
     viewer = nt.viewer.show(eight, height=300, light=True)
-    assert viewer.height == 300 and "#light" in viewer.page and viewer.frame == 0
+    assert viewer.height == 300 and "#light" in viewer.page and viewer.moment == 0
     assert isinstance(viewer, nt.viewer.viewer_class())
 
 
