@@ -1,5 +1,6 @@
 """What all pictures share: their style, where they are drawn, and what a run has to show."""
 
+import contextlib
 import math
 
 from . import _core
@@ -10,6 +11,7 @@ MARKS = ("o", "s", "^", "D", "v")
 INK, SOFT, FAINT, PRIMARY = "#1a1a1a", "#5c5c5c", "#e4e4e4", "#e0a500"
 # Bodies that are called by a colour have it.
 NAMED = {"red": "#d43d3d", "green": "#228833", "blue": "#3b6fb6", "orange": "#e08a2e", "purple": "#8e4fb0", "sun": PRIMARY}
+# For figures of one's own to match: plt.style.use(nt.plots.STYLE).
 STYLE = {
     "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#505050", "axes.linewidth": 0.8,
     "axes.labelcolor": INK, "axes.titlesize": 11, "axes.titlecolor": "#303030", "axes.labelsize": 10, "axes.grid": True,
@@ -18,6 +20,7 @@ STYLE = {
     "xtick.major.size": 3, "ytick.major.size": 3, "xtick.minor.size": 0, "ytick.minor.size": 0, "legend.frameon": False,
     "legend.fontsize": 9, "legend.handlelength": 1.4, "lines.linewidth": 1.3, "figure.facecolor": "white",
     "axes.formatter.limits": (-4, 5), "axes.formatter.use_mathtext": True,
+    "axes.prop_cycle": f"cycler('color', {list(COLOURS)})",
 }
 MOST_NAMES = 12  # more bodies have no legend
 
@@ -30,12 +33,23 @@ def pyplot():
     return matplotlib.pyplot
 
 
+@contextlib.contextmanager
+def styled():
+    """Figures that are made here are in the style of this package."""
+    import matplotlib
+
+    plt = pyplot()
+    with plt.rc_context(STYLE):
+        yield plt
+        interactive = matplotlib.is_interactive()
+    matplotlib.interactive(interactive)  # of a notebook, which begins with its first figure and shows no later ones without
+
+
 def axes_of(ax, size=(5.6, 3.4), **options):
     """The axes to draw into: those that are given, or new ones in the style of this package."""
-    plt = pyplot()
     if ax is not None:
         return ax
-    with plt.rc_context(STYLE):
+    with styled() as plt:
         return plt.subplots(figsize=size, layout="constrained", subplot_kw=options)[1]
 
 

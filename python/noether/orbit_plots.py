@@ -4,8 +4,8 @@ import math
 
 from . import _core
 from .drawing import (
-    COLOURS, SOFT, FAINT, PRIMARY, NAMED, STYLE, MOST_NAMES, pyplot, axes_of, run_of, frames_of, frames_needed, units_of,
-    scene_text, with_unit, length_scale, against_time, legend, places_of)
+    COLOURS, SOFT, FAINT, PRIMARY, NAMED, MOST_NAMES, styled, axes_of, run_of, frames_of, frames_needed, units_of,
+    scene_text, with_unit, length_scale, time_scale, against_time, legend, places_of)
 
 
 def primary_of(masses, names, about, run):
@@ -128,7 +128,7 @@ def orbits(what, *, bodies=None, about="auto", projection="xy", ellipses=True, f
         colour = NAMED.get(name.lower()) or (PRIMARY if body == primary else next(colours))
         if body not in chosen and body != primary:
             continue
-        label = name if names and len(all_names) <= MOST_NAMES else None
+        label = name if names and 1 < len(all_names) <= MOST_NAMES else None
         draw = {"color": colour, "solid_capstyle": "round"}
         if body != primary:
             path = _path(times, x[:, body], None if v is None else v[:, body])
@@ -156,6 +156,8 @@ def _equal(ax, flat):
         ax.set_aspect("equal", adjustable="datalim")
         return
     ax.set_aspect("equal")
+    ends = [getattr(ax, f"get_{letter}lim")() for letter in "xyz"]
+    ax.set_box_aspect([high - low for low, high in ends], zoom=1.2)
     for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
         axis.pane.set_visible(False)
         axis.line.set_color(FAINT)
@@ -233,17 +235,17 @@ def elements(what, bodies=None, *, quantities=("a", "e", "inc"), about="auto", a
     primary = primary_of(frames.masses, frames.names, about, run)
     if primary is None:
         raise _core.Error("elements need a primary, and no body is ten times as heavy as all others; give about=...")
-    plt, own = pyplot(), ax is None
+    own = ax is None
     if own:
-        with plt.rc_context(STYLE):
+        with styled() as plt:
             ax = plt.subplots(len(wanted), 1, figsize=(6.2, 0.6 + 1.7 * len(wanted)), sharex=True, layout="constrained",
                               squeeze=False)[1][:, 0]
     all_axes = numpy.atleast_1d(numpy.asarray(ax, dtype=object)).ravel()
     if len(all_axes) != len(wanted):
         raise ValueError(f"ax has {len(all_axes)} axes for {len(wanted)} quantities")
     x, v = numpy.asarray(frames.positions[:]), numpy.asarray(frames.velocities[:])
-    length, _, time, _ = _core.unit_names(frames.units)
-    units = {"a": length, "P": time, "e": "1"}
+    scale, time = time_scale(frames.units, frames.time)
+    units = {"a": _core.unit_names(frames.units)[0], "P": time, "e": "1"}
     colours = iter(COLOURS * (1 + len(frames.names) // len(COLOURS)))
     chosen = [k for k in places_of(bodies, frames.names) if k != primary]
     for body in range(len(frames.names)):
@@ -251,8 +253,10 @@ def elements(what, bodies=None, *, quantities=("a", "e", "inc"), about="auto", a
         if body not in chosen:
             continue
         found = elements_of(x, v, frames.masses, body, primary, frames.units)
+        found = {name: values if name in units else numpy.degrees(values) for name, values in found.items()}
+        found["P"] = found["P"] / scale
         for axis, quantity in zip(all_axes, wanted):
-            values = numpy.degrees(found[quantity]) if quantity not in units else found[quantity]
+            values = found[quantity]
             axis.plot(against_time(axis, frames.units, frames.time), values, color=colour, lw=1.1,
                       label=str(frames.names[body]) or str(body))
     for axis, quantity in zip(all_axes, wanted):

@@ -1,14 +1,14 @@
 """Pictures by matplotlib: orbits, elements, energies, liquids, variables, and comparisons of methods.
 
 Every function draws into `ax`, or into a figure of its own, and returns the axes; what a picture needs and a run does not have
-is one clear error. `plot` chooses by what there is.
+is one clear error. `plot` chooses by what there is. `plt.style.use(nt.plots.STYLE)` makes figures of your own match.
 """
 
 import math
 
 from . import _core
-from .drawing import (
-    COLOURS, MARKS, INK, SOFT, STYLE, MOST_NAMES, pyplot, axes_of, run_of, monitors_of, series_of, frames_of, units_of,
+from .drawing import (  # noqa: F401 STYLE is for users
+    COLOURS, MARKS, INK, SOFT, STYLE, MOST_NAMES, styled, axes_of, run_of, monitors_of, series_of, frames_of, units_of,
     with_unit, length_scale, is_logarithmic, against_time, legend, decades, places_of)
 from .orbit_plots import ELEMENT_NAMES, elements, orbits, positions, primary_of
 
@@ -46,6 +46,9 @@ def energies(run, *, ax=None):
         ax.plot(against_time(ax, units_of(run), shadow.time)[one > 0], one[one > 0], color=COLOURS[1], lw=1.1,
                 label=f"shadow{'' if order is None else f' of order {order}'}, at most {_short(one.max())}")
     decades(ax)
+    shown = numpy.concatenate([line.get_ydata() for line in ax.get_lines()] or [[1e-16]])
+    if len(shown):  # whole decades, and single looks that are nearly exact may lie below
+        ax.set_ylim(10 ** math.floor(math.log10(numpy.quantile(shown, 0.02))), 10 ** math.ceil(math.log10(shown.max() * 1.01)))
     ax.set_ylabel("relative error")
     legend(ax, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, borderaxespad=0.2)
     return ax
@@ -192,7 +195,7 @@ def mean_square_displacement(run, *, ax=None, **line):
         fit = 6 * coefficient * lag + shift
         unit = _core.unit_of("length^2/time", units) if units != "reduced" else "1"
         ax.plot(lag[fit >= 0], fit[fit >= 0], color=SOFT, lw=0.9, ls=(0, (4, 3)),
-                label=f"D = {coefficient:.3g}{'' if unit == '1' else ' ' + unit}")
+                label=f"D = {coefficient:.3g}{'' if unit == '1' else ' ' + unit}".replace("^2", "\u00b2"))
         legend(ax, loc="upper left")
     ax.set_xlim(left=0)
     ax.set_ylim(bottom=0)
@@ -252,26 +255,34 @@ def plot_comparison(comparison, *, error=None, against="time", ax=None):
     if not len(rows):
         raise _core.Error(f"the comparison has no run with a positive error of the kind {error!r}")
     ax = axes_of(ax, (6.6, 4.2))
-    ends = []
     for k, (method, own) in enumerate(rows.groupby("method", sort=False)):
-        own = own.sort_values(across)
         x, y = own[across].astype(float).to_numpy(), own[column].astype(float).to_numpy()
         adaptive = own["step"].isna().all()
         colour = COLOURS[k % len(COLOURS)]
         ax.plot(x, y, color=colour, lw=1.3, marker=MARKS[k % len(MARKS)], ms=5, mfc="white" if adaptive else colour, mec=colour,
                 ls=(0, (5, 2)) if adaptive else "-", label=method, zorder=3)
-        ends.append((x[-1], y[-1], method, colour))
     best = rows[rows[front].astype(bool)].sort_values(across)
     x, y = best[across].astype(float).to_numpy(), best[column].astype(float).to_numpy()
     ax.step(x, y, where="post", color=INK, alpha=0.10, lw=8, solid_joinstyle="round", solid_capstyle="round", zorder=1)
     ax.plot(x, y, "o", ms=11, mfc="none", mec=INK, mew=1.0, zorder=4)
-    ax.set_xscale("log")
+    _costs(ax, "s" if against == "time" else "")
     decades(ax)
-    scale = comparison.to_dict().get("end")
-    ax.set_xlabel("run time (s)" if against == "time" else "evaluations of forces")
-    ax.set_ylabel(f"{name}" + (f" up to {scale:g}{_time_name(comparison)}" if isinstance(scale, (int, float)) else ""))
+    end = comparison.to_dict().get("end")
+    ax.set_xlabel("run time" if against == "time" else "evaluations of forces")
+    ax.set_ylabel(name + (f" up to {end:g}{_time_name(comparison)}" if isinstance(end, (int, float)) else ""))
     legend(ax, outside=True)
     return ax
+
+
+def _costs(ax, unit):
+    """A logarithmic axis with numbers such as 20 \u00b5s: by decades, or where there are few of these by 1, 2 and 5."""
+    from matplotlib.ticker import EngFormatter, LogLocator, NullLocator
+
+    low, high = ax.dataLim.intervalx
+    ax.set_xscale("log")
+    ax.xaxis.set_major_locator(LogLocator(10, subs=(1,) if high > 300 * low else (1, 2, 5), numticks=12))
+    ax.xaxis.set_major_formatter(EngFormatter(unit=unit))
+    ax.xaxis.set_minor_locator(NullLocator())
 
 
 def _time_name(comparison):
@@ -321,11 +332,10 @@ def plot(run, *, what=None, ax=None):
     if ax is not None or len(chosen) == 1:
         made = _draw(run, chosen[0], ax)
         return made if ax is not None else numpy.array([made], dtype=object)
-    plt = pyplot()
     others = len(chosen) - 1
     columns = 1 if others <= 2 else 2
     rows = max(2, math.ceil(others / columns))
-    with plt.rc_context(STYLE):
+    with styled() as plt:
         figure = plt.figure(figsize=(5.2 + 3.5 * columns, max(4.6, 2.3 * rows)), layout="constrained")
         grid = figure.add_gridspec(rows, 1 + columns, width_ratios=[1.5] + [1] * columns)
         places = [grid[:, 0]] + [grid[k // columns, 1 + k % columns] for k in range(others)]
