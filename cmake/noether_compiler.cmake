@@ -14,6 +14,13 @@ if(PROJECT_IS_TOP_LEVEL)
   endif()
 endif()
 
+set(NOETHER_FMT_TARGET fmt::fmt)
+if(NOETHER_STATIC)
+  set(NOETHER_FMT_TARGET fmt::fmt-header-only)
+  set(HDF5_USE_STATIC_LIBRARIES ON)
+  set(OPENSSL_USE_STATIC_LIBS ON)
+endif()
+
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt 9 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
