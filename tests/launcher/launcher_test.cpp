@@ -33,6 +33,8 @@ struct Checkout : ScratchFolder {
     fs::copy_file(NOETHER_SOURCE_DIR "/noether", tree("noether"));
     fs::copy_file(NOETHER_SOURCE_DIR "/cli/commands.hpp", tree("cli/commands.hpp"));
     fs::copy_file(NOETHER_SOURCE_DIR "/cmake/nightly.py", tree("cmake/nightly.py"));
+    fs::create_directories(tree("python"));
+    fs::copy_file(NOETHER_SOURCE_DIR "/python/wheel.sh", tree("python/wheel.sh"));
     write_text(tree("CMakeLists.txt"), "noether_library(numbers)\n  noether_library(cli ROOMS numbers)\n");
     write_text(tree("tests/CMakeLists.txt"),
                "  add_test(NAME lint.${name} COMMAND true)\nadd_test(NAME tsan COMMAND)\n");
@@ -67,7 +69,8 @@ chmod +x "$2/cli/noether"
   fs::path tree(const std::string& name = "") const { return path() / "tree" / name; }
 
   std::vector<std::string> command(const std::string& line, const std::vector<std::string>& settings = {}) const {
-    std::vector<std::string> all{"env", "-u", "NOETHER_WERROR", "-u", "NOETHER_UNITY", "-u", "NOETHER_TELL_EVERY"};
+    std::vector<std::string> all{"env", "-u", "NOETHER_WERROR", "-u", "NOETHER_UNITY", "-u", "NOETHER_TELL_EVERY",
+                                 "-u",  "NOETHER_PYTHON"};
     all.push_back("PATH=" + (path() / "bin").string() + ":/usr/sbin:/usr/bin:/sbin:/bin");
     all.push_back("CALLS=" + (path() / "calls").string());
     all.insert(all.end(), settings.begin(), settings.end());
@@ -97,7 +100,7 @@ TEST_CASE("the launcher's help is answered at once: nothing is built, and nothin
   const Checkout checkout;
   for (const char* line :
        {"build --help", "test --help", "bench --help", "help build", "help test", "help bench", "test forces -h",
-        "build asan --help", "--help", "-h", "help", "help run", "bench kepler --help"}) {
+        "wheel --help", "help wheel", "build asan --help", "--help", "-h", "help", "help run", "bench kepler --help"}) {
     const ProcessResult result = checkout.launch(line);
     INFO(line << "\n" << result.out << result.err);
     CHECK(result.exit_code == 0);
@@ -107,7 +110,8 @@ TEST_CASE("the launcher's help is answered at once: nothing is built, and nothin
   CHECK(has(checkout.launch("test --help").out, "Folders: forces io lint tsan\n"));
   CHECK(has(checkout.launch("bench --help").out, "Benchmarks: kepler lj_melt\n"));
   const std::string help = checkout.launch("--help").out;
-  for (const char* part : {"\n  build ", "\n  test ", "\n  bench ", " run ", " explain ", "about eight minutes"}) {
+  for (const char* part : {"\n  build ", "\n  test ", "\n  bench ", "\n  wheel ", " run ", " explain ",
+                           "about eight minutes"}) {
     CHECK(has(help, part));
   }
   CHECK_FALSE(fs::exists(checkout.tree("build")));
@@ -126,6 +130,9 @@ TEST_CASE("what the launcher cannot serve is refused before anything is built", 
       {"test --failed", "--failed goes with --nightly: ./noether test --nightly --failed"},
       {"test --nightly --failed io", "--failed cannot be combined with folders; it runs what docs/nightly.md lists"},
       {"bench lj_metl", "unknown benchmark 'lj_metl'; did you mean 'lj_melt'?"},
+      {"wheel python3 python3.12", "wheel takes one Python, not 'python3 python3.12'; see ./noether wheel --help"},
+      {"wheel python9.9", "there is no Python 'python9.9'; a program is expected, such as python3.12"},
+      {"whele", "unknown command 'whele'; did you mean 'wheel'?"},
       {"rnu scene.toml", "unknown command 'rnu'; did you mean 'run'?"},
       {"tset", "unknown command 'tset'; did you mean 'test'?"},
       {"--vresion", "unknown option '--vresion' before a command; did you mean '--version'?"},
@@ -319,6 +326,39 @@ TEST_CASE("nightly tests run where the bare system of the packages cannot be had
   CHECK(has(result.out, " -L nightly -R ^(io)"));
   const Checkout other;
   CHECK(other.launch("test --nightly io", {"LACKED=ccache"}).exit_code == 4);  // nothing is built without it
+}
+
+TEST_CASE("the Python package is built where a virtual environment can be had for it, and left out elsewhere",
+          "[launcher]") {
+  const Checkout checkout;
+  write_text(checkout.tree("python/CMakeLists.txt"), "\n");
+  write_tool(checkout.path() / "bin/python3", R"([ "$1 $2" = "-m venv" ] || exec /usr/bin/python3 "$@"
+mkdir -p "${!#}/bin"
+printf '%s\n' '#!/bin/sh' 'echo "pip $*" >>"$CALLS"' '[ -z "$OFFLINE" ] || { echo no route; exit 1; }' >"${!#}/bin/pip"
+printf '%s\n' '#!/bin/sh' 'exit 0' >"${!#}/bin/python"
+chmod +x "${!#}"/bin/*
+)");
+  const ProcessResult offline = checkout.launch("test io", {"OFFLINE=1"});
+  CHECK(offline.exit_code == 0);
+  CHECK(has(offline.err, "noether: the Python package is left out: no route (all of it is in "));
+  CHECK(has(checkout.calls(), "\ncmake --preset release\nninja test_io\n"));
+  CHECK(checkout.built() == "ninja noether\n");  // running a scene needs no Python, and asks for none
+
+  const std::string python = checkout.tree("build/python/bin/python").string();
+  const std::string with = "cmake --preset release -DNOETHER_PYTHON:BOOL=ON -DPython_EXECUTABLE=" + python + "\n";
+  CHECK(checkout.launch("test io").exit_code == 0);
+  CHECK(has(checkout.calls(), "pip install --disable-pip-version-check "));
+  CHECK(has(checkout.calls(), with + "ninja test_io\n"));
+  fs::remove(checkout.path() / "calls");
+  CHECK(checkout.launch("test io").exit_code == 0);
+  CHECK(checkout.calls() == "ninja test_io\n");  // it is there: nothing is asked again
+
+  fs::remove(checkout.path() / "calls");
+  const std::string without = "cmake --preset release -DNOETHER_PYTHON:BOOL=OFF\nninja test_io\n";
+  CHECK(checkout.launch("test io", {"NOETHER_PYTHON=OFF"}).exit_code == 0);
+  CHECK(checkout.calls() == without);
+  CHECK(checkout.launch("test io", {"NOETHER_PYTHON=OFF"}).exit_code == 0);
+  CHECK(checkout.calls() == without + "ninja test_io\n");
 }
 
 TEST_CASE("a folder's tests are run alone, and only what they need is built", "[launcher]") {
