@@ -167,10 +167,10 @@ constexpr double gravitation(const Scale& s) {
 /// @source Codata2018
 constexpr double boltzmann(const Scale& s) { return (decimal(1380649, -29) / s.energy).rounded(); }
 
-/// The factor of Coulomb's law 1/(4 pi epsilon_0) = 8.9875517923e9 J m/C^2 [energy length/charge^2].
+/// The factor of Coulomb's law 1/(4 pi epsilon_0) with epsilon_0 = 8.8541878128e-12 C^2/J m [energy length/charge^2].
 /// @source Codata2018
 constexpr double electric(const Scale& s) {
-  return (decimal(89875517923, -1) * power(s.charge, 2) / (s.energy * s.length)).rounded();
+  return (power(s.charge, 2) / (Ratio{Quad(4) * pi} * decimal(88541878128, -22) * s.energy * s.length)).rounded();
 }
 
 /// Lengths in au, times in days, masses in solar masses, temperatures in K.
