@@ -1,11 +1,20 @@
 #include "integrators/methods/newmark.hpp"
 
 #include "integrators/all_methods.hpp"
-#include "integrators/methods/newton.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace noether {
+
+namespace {
+
+/// Unknowns from which sweeps are tried before a matrix is found, and how much each of them has to shrink the updates.
+constexpr Index least_swept_accelerations = 5;
+constexpr double least_shrinkage = 0.1;
+
+}  // namespace
 
 void NewmarkOptions::check() const {
   if (!(beta >= 0 && std::isfinite(beta)))
@@ -56,6 +65,34 @@ template <class Real> void Newmark<Real>::place(const Vector<Real>& y, double h)
   }
 }
 
+/// What an update of the accelerations does to positions and velocities, and how long it is in them.
+template <class Real> UpdateSize Newmark<Real>::take(const Vector<Real>& y, double h) {
+  const Index n = a1_.size();
+  for (Index i = 0; i < n; ++i) a1_[i] += update_[i];
+  const UpdateSize q = update_size(update_.data(), h * h * beta_, y.data(), y1_.data(), n);
+  const UpdateSize v = update_size(update_.data(), h * gamma_, y.data() + n, y1_.data() + n, n);
+  return {std::max(q.whole, v.whole), std::max(q.each, v.each)};
+}
+
+/// Sweeps a1 <- a(q1, v1), without a matrix, to rounding. @return whether they shrink fast enough to be worth it
+template <class Real> bool Newmark<Real>::sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+  constexpr int most = 40;
+  const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
+  double before = 0;
+  for (int iteration = 0; iteration < most; ++iteration) {
+    place(y, h);
+    f.acceleration(t + Real(h), y1_, update_);
+    update_ -= a1_;
+    const double now = take(y, h).whole;
+    if (!std::isfinite(now)) return false;
+    const double shrinks = iteration == 0 ? 0 : now / before;
+    if (now == 0 || (iteration > 0 && now * shrinks <= rounding / 64)) return true;
+    if (shrinks > least_shrinkage) return now <= 64 * rounding;
+    before = now;
+  }
+  return false;
+}
+
 template <class Real>
 std::optional<Failure> Newmark<Real>::solve(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
   const Index n = a1_.size();
@@ -68,19 +105,19 @@ std::optional<Failure> Newmark<Real>::solve(VectorField<Real>& f, const Real& t,
   const auto correct = [&]() -> std::optional<UpdateSize> {
     place(y, h);
     f.acceleration(end, y1_, update_);
-    for (Index i = 0; i < n; ++i) update_[i] = update_[i] - a1_[i];
+    update_ -= a1_;
     if (!jacobian_.solve_half(f, update_)) return {};
-    for (Index i = 0; i < n; ++i) a1_[i] += update_[i];
-    // What the update does to positions and velocities counts.
-    const UpdateSize q = update_size(update_.data(), h * h * beta_, y.data(), y1_.data(), n);
-    const UpdateSize v = update_size(update_.data(), h * gamma_, y.data() + n, y1_.data() + n, n);
-    return UpdateSize{std::max(q.whole, v.whole), std::max(q.each, v.each)};
+    return take(y, h);
   };
   // Where steps are long beside the fastest motion, its acceleration has turned: from q1 = q + h v it is nearer.
   const auto restart = [&] {
     const Real turned = beta_ > 0 ? Real((beta_ - 0.5) / beta_) : Real(1);
     for (Index i = 0; i < n; ++i) a1_[i] = turned * a0_[i];
   };
+  if (n >= least_swept_accelerations) {
+    if (sweep(f, t, y, h)) return {};
+    a1_ = a0_;
+  }
   if (!renew()) return singular_matrix(h);
   return newton_to_rounding<Real>(correct, restart, renew);
 }

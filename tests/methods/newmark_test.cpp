@@ -93,6 +93,18 @@ TEST_CASE("Newmark's method of average acceleration is the trapezoidal rule") {
   CHECK(distance(run(newmark, s, 0.05, 200), run(trapezoidal, s, 0.05, 200)) < 1e-12);
 }
 
+TEST_CASE("Newmark's steps that are not stiff need no matrix and are the same") {
+  auto s = particle_in_plane(1.02, 0, 0, 1);
+  s.add("other", 2.0, Vec3<double>(0, 0.3, -0.9), Vec3<double>(0.5, 0, 0.1));
+  for (const double h : {0.005, 0.05, 0.2}) {  // h^2 k / 4 = 0.0006, 0.06 and 1
+    INFO(h);
+    auto newmark = classical_over(LongSpring{}, method("newmark"));
+    auto trapezoidal = classical_over(LongSpring{}, method("trapezoidal"));
+    CHECK(distance(run(newmark, s, h, 50), run(trapezoidal, s, h, 50)) < 1e-12);
+    CHECK((newmark.evaluations().jacobian == 0) == (h < 0.1));
+  }
+}
+
 TEST_CASE("Newmark's method with beta = 0 is velocity Verlet, in one evaluation a stage") {
   const auto s = particle_in_plane(0.18, 0.18, 0.18, 0.18);
   auto newmark = classical_over(HenonHeilesField{}, method("newmark", NewmarkOptions{.beta = 0.0}));
