@@ -235,13 +235,12 @@ template <class Real>
 std::optional<Failure> ContinuedRoot<Real>::solve(StepEquations<Real>& equations, Vector<Real>& x, double h,
                                                   Evaluations& count) {
   trial_ = x;
-  if (x.size() >= least_swept) {
-    if (sweep(equations, trial_)) {
-      x = trial_;
-      return {};
-    }
-    trial_ = x;
+  swept_ = x.size() >= least_swept && sweep(equations, trial_);
+  if (swept_) {
+    x = trial_;
+    return {};
   }
+  trial_ = x;
   if (contract(equations, Real(1), trial_, count) == Found::yes) {
     x = trial_;
     return {};

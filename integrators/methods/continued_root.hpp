@@ -57,6 +57,8 @@ template <class Real> class ContinuedRoot {
   /// x, the guess for no step at all, becomes the root. @param h  of the step, for messages [time]
   /// @return nothing, or why there is none
   std::optional<Failure> solve(StepEquations<Real>& equations, Vector<Real>& x, double h, Evaluations& count);
+  /// Whether sweeps found the last root, as they do in steps that are not stiff.
+  bool swept() const { return swept_; }
 
  private:
   enum class Found { yes, no, unsolved };
@@ -72,6 +74,7 @@ template <class Real> class ContinuedRoot {
   JacobianForm form_ = JacobianForm::dense;
   bool has_tangent_ = false;
   bool stiff_ = false;  ///< the matrix is far from the identity
+  bool swept_ = false;
   DenseFactors<Real> factors_;
   Matrix<Real> matrix_;
   SparseFactors<Real> sparse_factors_;

@@ -25,6 +25,13 @@ template <class Real> class MeanForce {
 /// The kinetic energy changes by the work m a . (q1 - q), so the whole energy is kept if that is what the potential
 /// loses; momentum and angular momentum are if a has neither a sum nor a torque about the middle (q + q1)/2. Symmetric
 /// and of order 2 if a is.
+///
+/// The q1 that is found is rounded, by e, and where forces K q are stiff a differs by K e from what u was found with:
+/// the energy would change by K e . (q1 - q) in every step. So the velocities are changed by some units of rounding,
+/// until the kinetic energy has changed by the work of a between the places as they are: along what is left of v1
+/// without the translation and the rotation whose momenta are kept, so that these stay (docs/theory/secants.md). Steps
+/// that sweeps find are not stiff, and go without.
+/// @cost as `ContinuedRoot`, and one evaluation where that has needed a matrix
 /// @source Gonzalez1996
 template <class Real> class MeanForceStep {
  public:
@@ -35,8 +42,14 @@ template <class Real> class MeanForceStep {
   std::optional<Failure> make(MeanForce<Real>& force, Vector<Real>& y, double h, Evaluations& count);
 
  private:
+  void balance(MeanForce<Real>& force, const Vector<Real>& y);
+  void take_rigid_motion_out();
+
   ContinuedRoot<Real> root_;
-  Vector<Real> u_, end_;
+  Index particles_ = 0;  ///< 0: the coordinates are none of particles
+  bool keeps_momentum_ = false, keeps_angular_momentum_ = false;
+  Vector<Real> masses_;  ///< of the coordinates
+  Vector<Real> u_, end_, a_, way_;
 };
 
 extern template class MeanForceStep<double>;
