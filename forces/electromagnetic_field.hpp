@@ -89,6 +89,15 @@ template <class F> struct InField : F {
     }
   }
 
+  /// Whether it tells A: as its claims say, or, where it depends on how it was made, by a function of this name.
+  bool tells_vector_potential() const {
+    if constexpr (requires { this->has_vector_potential(); }) {
+      return this->has_vector_potential();
+    } else {
+      return detail::field_claims<F>().vector_potential;
+    }
+  }
+
   /// Of a field that is known in a part of space only: it says so by `bool covers(x) const`.
   template <class Real> static Failure beyond(const ParticleSystem<Real>& s, Index i) {
     return {.particle = i,
@@ -102,7 +111,7 @@ template <class F> struct InField : F {
     const auto& charges = s.template column<Charge>();
     const Real t = s.time();
     const bool momenta = out.wants_field_momenta();
-    if (momenta && !detail::field_claims<F>().vector_potential) {
+    if (momenta && !tells_vector_potential()) {
       out.fail(
           {.quantity = "vector potential",
            .message = "the field '" + detail::name_of(static_cast<const F&>(*this)) + "' has no vector potential"});

@@ -13,56 +13,56 @@ namespace {
 constexpr std::size_t reach = 6;  // places along an axis that a value between two of them takes
 
 /// Weights of six places for a value and its slope, at the part u in [0, 1] of the way from the third to the fourth.
-struct Weights {
-  std::array<double, reach> value{}, slope{};
-};
+template <class Number> struct Weights { std::array<Number, reach> value{}, slope{}; };
 
-Weights weights_at(double u) {
+template <class Number> Weights<Number> weights_at(const Number& u) {
   // Hermite's cubic of two values and two slopes, and these as differences of fourth order.
   constexpr std::array<double, 5> difference = {1.0 / 12, -8.0 / 12, 0, 8.0 / 12, -1.0 / 12};
-  const double v = 1 - u;
-  const std::array<double, 4> h = {v * v * (1 + 2 * u), u * u * (1 + 2 * v), u * v * v, -u * u * v};
-  const std::array<double, 4> d = {-6 * u * v, 6 * u * v, v * (v - 2 * u), u * (u - 2 * v)};
-  Weights w;
+  const Number one(1), two(2), six(6), v = one - u;
+  const std::array<Number, 4> h = {v * v * (one + two * u), u * u * (one + two * v), u * v * v, -u * u * v};
+  const std::array<Number, 4> d = {-six * u * v, six * u * v, v * (v - two * u), u * (u - two * v)};
+  Weights<Number> w;
   w.value[2] = h[0];
   w.value[3] = h[1];
   w.slope[2] = d[0];
   w.slope[3] = d[1];
   for (std::size_t k = 0; k < difference.size(); ++k) {
-    w.value[k] += h[2] * difference[k];
-    w.slope[k] += d[2] * difference[k];
-    w.value[k + 1] += h[3] * difference[k];
-    w.slope[k + 1] += d[3] * difference[k];
+    const Number weight(difference[k]);
+    w.value[k] += h[2] * weight;
+    w.slope[k] += d[2] * weight;
+    w.value[k + 1] += h[3] * weight;
+    w.slope[k + 1] += d[3] * weight;
   }
   return w;
 }
 
 /// A value and its slopes along x, y and z.
-struct Sloped {
-  double value = 0;
-  std::array<double, 3> slope{};
+template <class Number> struct Sloped {
+  Number value = Number(0);
+  std::array<Number, 3> slope{};
 };
 
 /// Where a place lies: the first of its six along each axis, and their weights.
-struct Cell {
+template <class Number> struct Cell {
   std::array<Index, 3> first{};
-  std::array<Weights, 3> weights;
+  std::array<Weights<Number>, 3> weights;
 };
 
 /// Component `c` of `width` in values on a grid.
-Sloped between(const FieldGrid& grid, const std::vector<double>& values, std::size_t width, std::size_t c,
-               const Cell& cell) {
+template <class Number>
+Sloped<Number> between(const FieldGrid& grid, const std::vector<double>& values, std::size_t width, std::size_t c,
+                       const Cell<Number>& cell) {
   const auto ny = static_cast<std::size_t>(grid.counts[1]), nz = static_cast<std::size_t>(grid.counts[2]);
   const auto i0 = static_cast<std::size_t>(cell.first[0]), j0 = static_cast<std::size_t>(cell.first[1]),
              k0 = static_cast<std::size_t>(cell.first[2]);
   const auto& [wx, wy, wz] = cell.weights;
-  Sloped all;
+  Sloped<Number> all;
   for (std::size_t i = 0; i < reach; ++i) {
-    double plane = 0, by_y = 0, by_z = 0;
+    Number plane(0), by_y(0), by_z(0);
     for (std::size_t j = 0; j < reach; ++j) {
-      double row = 0, along = 0;
+      Number row(0), along(0);
       for (std::size_t k = 0; k < reach; ++k) {
-        const double here = values[(((i0 + i) * ny + j0 + j) * nz + k0 + k) * width + c];
+        const Number here(values[(((i0 + i) * ny + j0 + j) * nz + k0 + k) * width + c]);
         row += wz.value[k] * here;
         along += wz.slope[k] * here;
       }
@@ -75,19 +75,23 @@ Sloped between(const FieldGrid& grid, const std::vector<double>& values, std::si
     all.slope[1] += wx.value[i] * by_y;
     all.slope[2] += wx.value[i] * by_z;
   }
-  for (std::size_t k = 0; k < 3; ++k) all.slope[k] /= grid.spacing[k];
+  for (std::size_t k = 0; k < 3; ++k) all.slope[k] /= Number(grid.spacing[k]);
   return all;
 }
 
+double plain(double x) { return x; }
+double plain(const Dual<double, 1>& x) { return x.value; }
+
 /// The cell that x lies in, or the nearest that is known.
-Cell cell_at(const FieldGrid& grid, const Vec3<double>& x) {
-  Cell cell;
+template <class Number> Cell<Number> cell_at(const FieldGrid& grid, const Vec3<Number>& x) {
+  Cell<Number> cell;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double place = (x[static_cast<Index>(k)] - grid.origin[k]) / grid.spacing[k];
+    const Number place = (x[static_cast<Index>(k)] - Number(grid.origin[k])) / Number(grid.spacing[k]);
     const auto last = static_cast<double>(grid.counts[k] - 4);
-    const double within = std::clamp(std::floor(place), 2.0, last), low = within >= 2 ? within : 2;  // a NaN is none
+    const double within = std::clamp(std::floor(plain(place)), 2.0, last),
+                 low = within >= 2 ? within : 2;  // a NaN is none
     cell.first[k] = static_cast<Index>(low) - 2;
-    cell.weights[k] = weights_at(place - low);
+    cell.weights[k] = weights_at<Number>(place - Number(low));
   }
   return cell;
 }
@@ -166,10 +170,10 @@ double GridField::divergence() const {
           x[static_cast<Index>(axis)] =
               grid->origin[axis] + (static_cast<double>(low[axis]) + 0.5) * grid->spacing[axis];
         }
-        const Cell cell = cell_at(*grid, x);
+        const Cell<double> cell = cell_at(*grid, x);
         double divergence = 0, strength = 0;
         for (std::size_t c = 0; c < 3; ++c) {
-          const Sloped B = between(*grid, grid->B, 3, c, cell);
+          const Sloped<double> B = between(*grid, grid->B, 3, c, cell);
           divergence += B.slope[c] * grid->spacing[c];
           strength += B.value * B.value;
         }
@@ -181,22 +185,24 @@ double GridField::divergence() const {
   return strongest > 0 ? largest / strongest : 0;
 }
 
-void GridField::interpolate(const Vec3<double>& x, FieldValues<double>& field) const {
-  const Cell cell = cell_at(*grid, x);
+template <class Number> void GridField::interpolate(const Vec3<Number>& x, FieldValues<Number>& field) const {
+  const Cell<Number> cell = cell_at(*grid, x);
   if (!grid->A.empty()) {
-    std::array<Sloped, 3> A;
+    std::array<Sloped<Number>, 3> A;
     for (std::size_t c = 0; c < 3; ++c) A[c] = between(*grid, grid->A, 3, c, cell);
-    field.A = Vec3<double>(A[0].value, A[1].value, A[2].value);
-    field.B = Vec3<double>(A[2].slope[1] - A[1].slope[2], A[0].slope[2] - A[2].slope[0], A[1].slope[0] - A[0].slope[1]);
+    field.A = Vec3<Number>(A[0].value, A[1].value, A[2].value);
+    field.B = Vec3<Number>(A[2].slope[1] - A[1].slope[2], A[0].slope[2] - A[2].slope[0], A[1].slope[0] - A[0].slope[1]);
   } else if (!grid->B.empty()) {
     for (std::size_t c = 0; c < 3; ++c) field.B[static_cast<Index>(c)] = between(*grid, grid->B, 3, c, cell).value;
   }
   if (grid->phi.empty()) return;
-  const Sloped phi = between(*grid, grid->phi, 1, 0, cell);
+  const Sloped<Number> phi = between(*grid, grid->phi, 1, 0, cell);
   field.phi = phi.value;
-  field.E = -Vec3<double>(phi.slope[0], phi.slope[1], phi.slope[2]);
+  field.E = -Vec3<Number>(phi.slope[0], phi.slope[1], phi.slope[2]);
 }
 
+template void GridField::interpolate(const Vec3<double>&, FieldValues<double>&) const;
+template void GridField::interpolate(const Vec3<Dual<double, 1>>&, FieldValues<Dual<double, 1>>&) const;
 template struct detail::ForceModel<InField<GridField>, double>;
 
 }  // namespace noether

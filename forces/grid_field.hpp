@@ -36,7 +36,8 @@ struct FieldGrid {
 /// order: A and phi are smooth to first order, and B = rot A has no divergence, to rounding, whatever the grid is. With
 /// a grid of B alone its components are such cubics, and `divergence` tells what is left.
 ///
-/// It is known at places with two more on either side: beyond that a run ends by name. Double precision only.
+/// It is known at places with two more on either side: beyond that a run ends by name. Double precision only, and
+/// slopes of it.
 /// @cost 216 places read, some 2000 operations
 struct GridField {
   std::string file = {};  ///< as scenes name it
@@ -56,18 +57,21 @@ struct GridField {
 
   /// @throws Error  without a grid, and as its `check` does
   void expect_values() const;
+  /// Whether it tells A: not where the grid has B alone.
+  bool has_vector_potential() const { return grid == nullptr || grid->B.empty(); }
   /// Whether the field is known there.
   bool covers(const Vec3<double>& x) const;
+  bool covers(const Vec3<Dual<double, 1>>& x) const { return covers(Vec3<double>(x[0].value, x[1].value, x[2].value)); }
   /// Largest |div B| in the middles of cells, relative to the largest |B| over a spacing; of a large grid in some 1e5
   /// of them.
   double divergence() const;
 
-  template <std::same_as<double> Real> void at(const Real& /*t*/, const Vec3<Real>& x, FieldValues<Real>& field) const {
-    interpolate(x, field);
-  }
+  template <class Real>
+    requires std::same_as<Real, double> || std::same_as<Real, Dual<double, 1>>
+  void at(const Real& /*t*/, const Vec3<Real>& x, FieldValues<Real>& field) const { interpolate(x, field); }
 
  private:
-  void interpolate(const Vec3<double>& x, FieldValues<double>& field) const;
+  template <class Number> void interpolate(const Vec3<Number>& x, FieldValues<Number>& field) const;
 };
 
 template <class F>

@@ -27,6 +27,9 @@ void ChargedParticlesOptions::check() const {
     refuse_field("rotation", rotation == Rotation::boris ? "\"boris\"" : "\"hyper_boris\"",
                  "is for slow particles; relativistic says how fast ones turn, so take one of the two out");
   }
+  if (canonical && relativistic != Relativistic::no) {
+    refuse_field("canonical", "true", "is for slow particles; take it out, or relativistic");
+  }
   check_speed_of_light(c);
   if (c && relativistic == Relativistic::no) {
     refuse_field("c", *c, "is that of relativistic particles; give relativistic = \"higuera_cary\", or take it out");

@@ -48,6 +48,7 @@ struct ChargedParticlesOptions {
   std::int64_t cycles = 2;           ///< of `hyper_boris`: turns in a kick
   std::int64_t gyrophase_order = 2;  ///< of `hyper_boris`: of the angle of each
   Relativistic relativistic = Relativistic::no;
+  bool canonical = false;        ///< methods for y' = f move p = m v + q A in the place of v
   std::optional<double> c = {};  ///< speed of light [length/time]; default: that of the unit system
 
   static constexpr auto describe() {
@@ -67,6 +68,10 @@ struct ChargedParticlesOptions {
             "relativistic", "1",
             "no; or how particles near the speed of light are kicked: boris, vay, or higuera_cary, which keeps volume "
             "and gets drifts across fields right"),
+        field<&ChargedParticlesOptions::canonical>(
+            "canonical", "1",
+            "methods for y' = f move p = m v + q A in the place of v, under H = |p - q A|^2/2m + q phi; those of an "
+            "energy H(q, p), such as semiexplicit_2, tao_2 and avf, do so anyway"),
         field<&ChargedParticlesOptions::c>("c", "length/time", "speed of light; default: that of the unit system"));
   }
   /// @throws Error  for options that do not go together

@@ -198,6 +198,7 @@ Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Rea
   }
   const Evaluations counted = field_->evaluations();
   look_ahead(raw, *at);
+  out.clock().move_to(*at);  // fields that change tell velocities by the time
   field_->scatter(y_, out);
   if (ahead_) {
     const bool inside = ahead_->method->dense() && ahead_->h != 0;
@@ -206,7 +207,6 @@ Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Rea
   }
   out.wrap();
   field_->evaluations() = counted;
-  out.clock().move_to(*at);
   return Real(0);  // at whole steps nothing is left to do, and between them no action is told
 }
 

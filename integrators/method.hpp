@@ -36,6 +36,7 @@ struct MethodClaims {
   bool conservative_only = false;       ///< serves fields with an energy that is conserved, without velocity-dependent
                                         ///< forces of particles
   bool second_words = false;            ///< its state is `low_words` too
+  bool of_momenta = false;              ///< of charges in fields it serves the motion by x and m v + q A only
 };
 
 /// A step that was made, or why none was.

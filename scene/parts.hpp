@@ -86,6 +86,7 @@ struct SceneSplitting {
   SplittingClaims claims;        ///< without forces: `claims()`
   std::optional<double> c = {};  ///< speed of light, where its particles are relativistic [length/time]
   bool only_forces = false;      ///< p^2/2m and forces are all of it: methods for y' = f serve it too
+  bool canonical = false;        ///< and move momenta m v + q A of charges in fields
   std::vector<SceneForce> own;   ///< those it has in itself, as such methods take them
   std::function<AnyHamiltonian<double>(ForceField<double>)> make;
   std::function<AnyHamiltonian<double>(ForceField<double>, ConstraintSet)> make_constrained;  ///< empty: it knows none
@@ -394,6 +395,7 @@ class Parts {
       std::apply([&](const auto&... own) { (made.own.push_back(scene_force(own, set_fields(reader, own))), ...); },
                  part.forces());
     }
+    if constexpr (requires { part.canonical; }) made.canonical = part.canonical;
     detail::check_fields(reader, part);
     if constexpr (requires { part.light(*reader.context().units); }) {
       try {

@@ -19,7 +19,12 @@ template <class Real>
 AverageField4<Real>::AverageField4(const MethodInfo& info, const MethodOptions& /*options*/) : name_(info.name) {}
 
 template <class Real> MethodClaims AverageField4<Real>::claims() const {
-  return {.name = name_, .order = 4, .reversible = true, .energy_exact = true, .conservative_only = true};
+  return {.name = name_,
+          .order = 4,
+          .reversible = true,
+          .energy_exact = true,
+          .conservative_only = true,
+          .of_momenta = true};
 }
 
 template <class Real> void AverageField4<Real>::bind(const VectorField<Real>& f) {

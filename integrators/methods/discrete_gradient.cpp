@@ -248,7 +248,12 @@ template <class Real> void require_energy(std::string_view method, const VectorF
 }  // namespace
 
 template <class Real> MethodClaims GonzalezMethod<Real>::claims() const {
-  return {.name = name_, .order = 2, .reversible = true, .energy_exact = true, .conservative_only = true};
+  return {.name = name_,
+          .order = 2,
+          .reversible = true,
+          .energy_exact = true,
+          .conservative_only = true,
+          .of_momenta = true};
 }
 
 template <class Real> void GonzalezMethod<Real>::bind(const VectorField<Real>& f) {
@@ -284,7 +289,8 @@ template <class Real> MethodClaims ItohAbeMethod<Real>::claims() const {
           .reversible = symmetric_,
           .keeps_momentum = false,
           .energy_exact = true,
-          .conservative_only = true};
+          .conservative_only = true,
+          .of_momenta = true};
 }
 
 template <class Real> void ItohAbeMethod<Real>::bind(const VectorField<Real>& f) {

@@ -79,7 +79,7 @@ template <class Real> Real largest(const Vector<Real>& y, int half) {
 template <class Real> Real strongest_coupling(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
   using std::cbrt, std::max, std::min, std::sqrt;
   const Index n = y.size() / 2;
-  const bool canonical = f.claims().canonical;
+  const bool canonical = f.claims().canonical && f.particles() == 0;
   const Real unset(std::numeric_limits<double>::max()), size[2] = {largest(y, 0), largest(y, 1)};
   Vector<Real> v, w, up, down, moved;
   const auto product = [&](const Vector<Real>& along, Vector<Real>& out) {
@@ -159,12 +159,12 @@ void TwinStates<Real>::move_first_positions(VectorField<Real>& f, const Real& t,
   second.tail(n) += tau * rates_.tail(n);
 }
 
-template <class Real> void TwinStates<Real>::turn_difference(const Real& angle, const Real& scale) {
+template <class Real> void TwinStates<Real>::turn_difference(const Real& angle, const Vector<Real>& scales) {
   using std::cos, std::sin;
   const Index n = first.size() / 2;
   const Real c = cos(angle), s = sin(angle);
   for (Index i = 0; i < n; ++i) {
-    const Real q = first[i] - second[i], p = first[n + i] - second[n + i];
+    const Real &scale = scales[i], q = first[i] - second[i], p = first[n + i] - second[n + i];
     const Real half_q = (c * q + s * p / scale - q) / Real(2), half_p = (c * p - s * q * scale - p) / Real(2);
     first[i] += half_q;
     second[i] -= half_q;
@@ -183,14 +183,18 @@ TaoMethod<Real>::TaoMethod(const MethodInfo& info, const MethodOptions& options)
       given_omega_(options.own.as<TaoOptions>().omega) {}
 
 template <class Real> MethodClaims TaoMethod<Real>::claims() const {
-  return {.name = name_, .order = order_};  // there and back the copies are no longer equal
+  return {.name = name_, .order = order_, .of_momenta = true};  // there and back the copies are no longer equal
 }
 
 template <class Real> void TaoMethod<Real>::bind(const VectorField<Real>& f) {
   require_canonical(name_, f);
   second_order_ = f.claims().second_order;
+  of_particles_ = f.particles() > 0;
+  of_momenta_ = of_particles_ && f.claims().canonical;
   twins_.resize(f.size());
   apart_.setZero(f.size());
+  masses_ = of_momenta_ ? f.masses() : Vector<Real>::Ones(f.size() / 2);
+  scales_ = Vector<Real>::Ones(f.size() / 2);
   begun_ = false;
 }
 
@@ -198,9 +202,18 @@ template <class Real>
 void TaoMethod<Real>::begin(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
   begun_ = true;
   largest_ = {Real(0), Real(0)};
-  const double over = second_order_ ? bond_over_rate : bond_over_curvature;
-  omega_ = given_omega_ ? Real(*given_omega_) : Real(over) * strongest_coupling(f, t, y);
+  const double over = of_particles_ ? bond_over_rate : bond_over_curvature;
+  const Real coupling = given_omega_ && !of_momenta_ ? Real(0) : strongest_coupling(f, t, y);
+  omega_ = given_omega_ ? Real(*given_omega_) : Real(over) * coupling;
   if (!(omega_ > Real(0))) omega_ = Real(1 / std::abs(h));
+  stretch_ = of_momenta_ && coupling > Real(0) ? coupling / Real(2) : omega_;
+  scale_momenta();
+}
+
+/// Of particles a rate relates positions and velocities, of charges positions and p/m = v + q A/m, which in a magnetic
+/// field is the half of that by which it turns; of other systems both are turned as they are.
+template <class Real> void TaoMethod<Real>::scale_momenta() {
+  if (of_particles_) scales_ = stretch_ * masses_;
 }
 
 template <class Real> void TaoMethod<Real>::moved(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>&) {
@@ -233,13 +246,12 @@ template <class Real> StepResult TaoMethod<Real>::step(VectorField<Real>& f, con
   StepResult made{.h = h};
   twins_.first = y;
   twins_.second = y + apart_;
-  const Real scale = second_order_ ? omega_ : Real(1);
   Real gone(0), pending(0);  // of the step; of the half step of A that is joined with the next one
   for (const Real& part : substeps_) {
     const Real half = part * Real(h) / Real(2), now = t + gone * Real(h);
     twins_.move_second_positions(f, now, pending + half);
     twins_.move_first_positions(f, now, half);
-    twins_.turn_difference(Real(4) * omega_ * half, scale);
+    twins_.turn_difference(Real(4) * omega_ * half, scales_);
     gone += part;
     twins_.move_first_positions(f, t + gone * Real(h), half);
     pending = half;
@@ -254,6 +266,7 @@ template <class Real> StepResult TaoMethod<Real>::step(VectorField<Real>& f, con
 template <class Real> void TaoMethod<Real>::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "begun", begun_);
   save_value(saved, prefix + "omega", omega_);
+  if (of_momenta_) save_value(saved, prefix + "stretch", stretch_);
   save_value(saved, prefix + "largest", largest_);
   save_value(saved, prefix + "apart", std::vector<Real>(apart_.begin(), apart_.end()));
 }
@@ -261,6 +274,8 @@ template <class Real> void TaoMethod<Real>::save(SavedState& saved, const std::s
 template <class Real> void TaoMethod<Real>::load(const SavedState& saved, const std::string& prefix) {
   load_value(saved, prefix + "begun", begun_);
   load_value(saved, prefix + "omega", omega_);
+  stretch_ = omega_;
+  if (of_momenta_) load_value(saved, prefix + "stretch", stretch_);
   load_value(saved, prefix + "largest", largest_);
   std::vector<Real> apart;
   load_value(saved, prefix + "apart", apart);
@@ -268,6 +283,7 @@ template <class Real> void TaoMethod<Real>::load(const SavedState& saved, const 
     throw Error(fmt::format("the saved run has {} variables, but this one {}", apart.size(), apart_.size()));
   }
   std::copy(apart.begin(), apart.end(), apart_.begin());
+  scale_momenta();
 }
 
 // ---- the semiexplicit method ---------------------------------------------------------------------------------------
@@ -334,7 +350,12 @@ SemiexplicitMethod<Real>::SemiexplicitMethod(const MethodInfo& info, const Metho
       substeps_(substeps_of<Real>(info.name, info.order, options.own.as<SemiexplicitOptions>().composition)) {}
 
 template <class Real> MethodClaims SemiexplicitMethod<Real>::claims() const {
-  return {.name = name_, .order = order_, .symplectic = true, .reversible = true, .keeps_angular_momentum = true};
+  return {.name = name_,
+          .order = order_,
+          .symplectic = true,
+          .reversible = true,
+          .keeps_angular_momentum = true,
+          .of_momenta = true};
 }
 
 template <class Real> void SemiexplicitMethod<Real>::bind(const VectorField<Real>& f) {

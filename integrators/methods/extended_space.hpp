@@ -26,8 +26,8 @@ template <class Real> class TwinStates {
   /// The flows of A and B over a time tau; H is that of time t. @cost an evaluation
   void move_second_positions(VectorField<Real>& f, const Real& t, const Real& tau);  ///< A
   void move_first_positions(VectorField<Real>& f, const Real& t, const Real& tau);   ///< B
-  /// Turns the difference of the copies, (q - x, (p - y)/scale), by an angle; their mean stays.
-  void turn_difference(const Real& angle, const Real& scale);
+  /// Turns the difference of the copies, (q - x, (p - y)/scale), by an angle; their mean stays. A scale for each q.
+  void turn_difference(const Real& angle, const Vector<Real>& scales);
 
   Vector<Real> first, second;  ///< (q, p) and (x, y)
 
@@ -69,6 +69,8 @@ struct TaoOptions {
 ///
 ///     C = omega (|q - x|^2 + |p - y|^2)/2,      of particles m (omega^2 |q - x|^2 + |v - w|^2)/2
 ///
+/// and of charges by momenta p = m v + q A the same with p/m for v, and half of the fastest rate for omega in the sum.
+///
 /// keeps them together. The basic word is A B C B A over half steps of A and B. It is symplectic in twice the
 /// dimensions, and of the order of its composition; what users see is (q, p). Second
 /// derivatives of H have to be small beside omega, or the copies part: where they are a tenth of the state apart the
@@ -90,14 +92,16 @@ template <class Real> class TaoMethod final : public Method<Real> {
 
  private:
   void begin(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
+  void scale_momenta();
   std::optional<Failure> watch();
 
   std::string_view name_;
   int order_;
   std::vector<Real> substeps_;
   std::optional<double> given_omega_;
-  bool second_order_ = false, begun_ = false;
-  Real omega_ = Real(0);
+  bool second_order_ = false, of_particles_ = false, of_momenta_ = false, begun_ = false;
+  Real omega_ = Real(0), stretch_ = Real(0);
+  Vector<Real> masses_, scales_;      ///< of each q; 1 where there are no particles
   std::array<Real, 2> largest_ = {};  ///< |q| and |p| so far
   Vector<Real> apart_;                ///< the second copy less the first one
   TwinStates<Real> twins_;

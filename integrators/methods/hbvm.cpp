@@ -41,7 +41,8 @@ template <class Real> MethodClaims Hbvm<Real>::claims() const {
           .keeps_angular_momentum = gauss || kept_.keeps("angular_momentum"),
           .energy_exact = fixed_nodes_ == 0 && (!kept_.any() || kept_.keeps("energy")),
           .exact_degree = kept_.any() ? 0 : 2 * fixed_nodes_ / coefficients_,
-          .conservative_only = true};
+          .conservative_only = true,
+          .of_momenta = true};
 }
 
 template <class Real> void Hbvm<Real>::bind(const VectorField<Real>& f) {
