@@ -61,7 +61,9 @@ struct GridField {
   bool has_vector_potential() const { return grid == nullptr || grid->B.empty(); }
   /// Whether the field is known there.
   bool covers(const Vec3<double>& x) const;
-  bool covers(const Vec3<Dual<double, 1>>& x) const { return covers(Vec3<double>(x[0].value, x[1].value, x[2].value)); }
+  template <std::same_as<Dual<double, 1>> Number> bool covers(const Vec3<Number>& x) const {
+    return covers(Vec3<double>(x[0].value, x[1].value, x[2].value));
+  }
   /// Largest |div B| in the middles of cells, relative to the largest |B| over a spacing; of a large grid in some 1e5
   /// of them.
   double divergence() const;

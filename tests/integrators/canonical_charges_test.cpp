@@ -200,7 +200,7 @@ TEST_CASE("methods over momenta have their orders, in 113 bits", "[integrators][
   };
   const Vec3<Quad> in_ring = end_by_velocities(test::RingField{}, ring_x, ring_v);
   for (const Row& row :
-       {Row{"implicit_midpoint", 2, 40}, Row{"gauss_2", 4, 20}, Row{"gauss_3", 6, 10}, Row{"gauss_4", 8, 16},
+       {Row{"implicit_midpoint", 2, 40}, Row{"gauss_2", 4, 20}, Row{"gauss_3", 6, 10}, Row{"gauss_4", 8, 8},
         Row{"tao_2", 2, 80}, Row{"tao_4", 4, 80}, Row{"semiexplicit_2", 2, 40}, Row{"semiexplicit_4", 4, 40},
         Row{"avf", 2, 40}, Row{"hbvm_4_2", 4, 20}, Row{"gonzalez", 2, 40}}) {
     slope(test::RingField{}, ring_x, ring_v, in_ring, row);
