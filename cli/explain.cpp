@@ -385,6 +385,8 @@ void print_cost(const Scene& scene, const Explanation& e) {
   if (group && info->group_work != nullptr) {
     fmt::print("  {}{}\n", group_work_text(info->group_work(*info, options)), dexp_text(*info, options));
   }
+  if (moves_momenta(scene))
+    fmt::print("  positions and the momenta m v + q A move, under H = |p - q A|^2/2m + q phi\n");
   fmt::print("  {} of {}{}, on the average of the first steps\n", counted(e.evaluations, "evaluation"),
              scene.system ? "all rates" : "all forces together",
              e.jacobians > 0 ? fmt::format(" and {} of their Jacobian", e.jacobians) : "");

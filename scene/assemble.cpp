@@ -216,24 +216,16 @@ std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
                                                      forces_of(scene).claims());
 }
 
-namespace {
-
-bool has_fields(const Scene& scene) {
-  const std::vector<SceneForce>& forces = scene.hamiltonian.forces;
-  return std::any_of(forces.begin(), forces.end(), [](const auto& f) { return f.force.claims().gyrates; });
-}
-
-/// What the method for y' = f of a scene moves: charges by their momenta where it or the Hamiltonian asks for these,
-/// else as `field_of` has it.
-std::unique_ptr<VectorField<double>> moved_by(const Scene& scene, const MethodChoice& choice) {
+bool moves_momenta(const Scene& scene) {
   const SceneSplitting& splitting = scene.hamiltonian.splitting;
-  if (scene.system || !splitting.only_forces || !has_fields(scene)) return field_of(scene);
-  const MethodClaims method = make_method<double>(*choice.info, choice.options)->claims();
-  if (method.second_order_only || !(splitting.canonical || method.of_momenta)) return field_of(scene);
-  return std::make_unique<CanonicalCharges<double>>(forces_of(scene), splitting.name);
+  const std::vector<SceneForce>& forces = scene.hamiltonian.forces;
+  const auto gyrates = [](const SceneForce& force) { return force.force.claims().gyrates; };
+  if (!scene.integrator.classical || scene.system || !splitting.only_forces) return false;
+  if (std::none_of(forces.begin(), forces.end(), gyrates)) return false;
+  const auto& [info, options] = *scene.integrator.classical;
+  const MethodClaims method = make_method<double>(*info, options)->claims();
+  return !method.second_order_only && (splitting.canonical || method.of_momenta);
 }
-
-}  // namespace
 
 Clock<double> clock_of(const SceneIntegrator& integrator) {
   return integrator.adaptive() ? Clock<double>::free(integrator.start, integrator.direction())
@@ -243,7 +235,12 @@ Clock<double> clock_of(const SceneIntegrator& integrator) {
 AnyIntegrator<double> integrator_of(const Scene& scene, std::size_t decorators) {
   const SceneIntegrator& made = scene.integrator;
   AnyIntegrator<double> integrator = [&]() -> AnyIntegrator<double> {
-    if (made.classical) return Classical<double>(moved_by(scene, *made.classical), *made.classical);
+    if (moves_momenta(scene)) {
+      return Classical<double>(
+          std::make_unique<CanonicalCharges<double>>(forces_of(scene), scene.hamiltonian.splitting.name),
+          *made.classical);
+    }
+    if (made.classical) return Classical<double>(field_of(scene), *made.classical);
     AnyHamiltonian<double> hamiltonian = hamiltonian_of(scene);
     scene.hamiltonian.check_kicks(hamiltonian.claims().kicks);
     return Composition<AnyHamiltonian<double>>(std::move(hamiltonian), scheme_of(made), made.composition);

@@ -175,6 +175,9 @@ ForceField<double> forces_of(const Scene& scene);
 
 /// All that moves a scene as y' = f(t, y): its system, or all its forces together (constraints left out).
 std::unique_ptr<VectorField<double>> field_of(const Scene& scene);
+/// Whether its method for y' = f moves charges by their momenta m v + q A instead: where it serves an energy H(q, p),
+/// or the Hamiltonian asks for it.
+bool moves_momenta(const Scene& scene);
 
 /// The integrator of a scene: its scheme over the parts of its Hamiltonian, or its classical method over all its
 /// forces, with what stands around it.

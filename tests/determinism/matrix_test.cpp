@@ -10,6 +10,7 @@
 #include "forces/on_sites.hpp"
 #include "forces/sum.hpp"
 #include "integrators/all_schemes.hpp"
+#include "integrators/canonical_charges.hpp"
 #include "integrators/charged_particles.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
@@ -263,21 +264,25 @@ std::vector<Twin> charged_twins() {
     s.column<Charge>()[i] = i % 3 == 0 ? -1 : 1;
   }
   std::vector<Twin> twins;
-  const auto add = [&](const std::string& name, const ChargedParticlesOptions& options, const std::string& keys,
-                       const Scheme& scheme) {
-    ForceField<double> both;
-    both.add(InField(Tokamak{.B0 = 1, .R0 = 1, .safety = 2}));
-    both.add(InField(UniformElectromagnetic{.E = {0.01, 0, 0.02}, .B = {0, 0, 0.1}}));
+  ForceField<double> both;
+  both.add(InField(Tokamak{.B0 = 1, .R0 = 1, .safety = 2}));
+  both.add(InField(UniformElectromagnetic{.E = {0.01, 0, 0.02}, .B = {0, 0, 0.1}}));
+  const auto add_twin = [&](const std::string& name, AnyIntegrator<double> program, const std::string& keys,
+                            std::string_view method) {
     twins.push_back(
         {.name = "charges, " + name,
          .bodies = s,
-         .program = compose(ChargedParticles<ForceField<double>>(both, options), scheme),
+         .program = std::move(program),
          .step = 0.1,
          .hamiltonian = "[hamiltonian]\ntype='charged_particles'\n" + keys +
                         "[[hamiltonian.field]]\ntype='tokamak'\nB0=1\nR0=1\nsafety=2\n"
                         "[[hamiltonian.field]]\ntype='uniform_electromagnetic'\nE=[0.01,0,0.02]\nB=[0,0,0.1]\n",
-         .method = std::string(scheme.name),
+         .method = std::string(method),
          .place = "[[particles.body]]\nname='replaced too'\nmass=1\ncharge=1\nx=[1,0,0]\nv=[0,0,0]\n"});
+  };
+  const auto add = [&](const std::string& name, const ChargedParticlesOptions& options, const std::string& keys,
+                       const Scheme& scheme) {
+    add_twin(name, compose(ChargedParticles<ForceField<double>>(both, options), scheme), keys, scheme.name);
   };
   ForceField<double> forces;
   forces.add(InField(Tokamak{.B0 = 1, .R0 = 1, .safety = 2}));
@@ -295,6 +300,8 @@ std::vector<Twin> charged_twins() {
       "rotation='hyper_boris'\ncycles=3\ngyrophase_order=4\n", schemes::verlet_aba);
   add("fast ones", {.relativistic = Relativistic::higuera_cary, .c = 0.1}, "relativistic='higuera_cary'\nc=0.1\n",
       schemes::yoshida_4);
+  add_twin("by momenta", canonical_charges(both, method("gauss_2")), "canonical=true\n", "gauss_2");
+  add_twin("by momenta in two copies", canonical_charges(both, method("tao_2")), "", "tao_2");
   return twins;
 }
 
