@@ -113,14 +113,17 @@ template <SplitHamiltonian H> class Composition {
   }
 
   /// Completes a copy: pending stage, word after the run (if `corrected`), inertial coordinates. Not corrected, it
-  /// stands where the composed map stands, at the start too: behind the word before the run.
-  /// @return the action of the pending stage, if wanted
+  /// stands where the composed map stands, at the start too: behind the word before the run, and if the action is
+  /// wanted, with p/m in the place of velocities where a Hamiltonian has other momenta than m v.
+  /// @return the action of the pending stage, if wanted of a copy that is not corrected
   real settle(const ParticleSystem<real>& raw, ParticleSystem<real>& out, Request wanted, std::optional<double> at,
               bool corrected) {
     NOETHER_EXPECTS(!at, "a composition can stop at whole steps only");
     out.assign_state(raw);
     real action(0);
-    if (!raw.phase().opened && (corrected || before_.empty())) return action;
+    wanted.action = wanted.action && !corrected;
+    if (!raw.phase().opened && corrected) return action;
+    if (!raw.phase().opened && before_.empty() && !(wanted.action && hamiltonian_.claims().inertial)) return action;
     const real dt(raw.clock().dt());
     hamiltonian_.observe(wanted);
     if (!raw.phase().opened) open(out, dt);

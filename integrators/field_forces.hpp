@@ -49,20 +49,28 @@ template <class F, class Real> class FieldForces {
   void expect_kicks(double longest) { longest_kick_ = longest; }
   void set_neighbor_options(const NeighborOptions& options) { neighbor_options_ = options; }
 
-  /// Brings the columns and, if wanted, the potential to where `s` stands.
-  void evaluate(const ParticleSystem<Real>& s, bool energy) {
+  /// Brings the columns and, if wanted, the potential and q A to where `s` stands.
+  void evaluate(const ParticleSystem<Real>& s, bool energy, bool momenta = false) {
     const Real time = s.time();
-    if (known_ && known_->version == s.version() && known_->time == time && (known_->energy || !energy)) return;
+    if (known_ && known_->version == s.version() && known_->time == time && (known_->energy || !energy) &&
+        (known_->momenta || !momenta)) {
+      return;
+    }
     ForceSink<Real> sink(acceleration_, s, {.energy = energy}, &workspace_, longest_kick_);
     sink.set_gyrations(rate_);
+    if (momenta) {
+      if (momentum_.size() != s.size()) momentum_ = VectorColumn<Real>(s.size());
+      sink.set_field_momenta(momentum_);
+    }
     forces_.add_to(sink, s);
     if (energy) potential_ = sink.potential();
     last_failure_ = sink.failure();
-    known_ = Known{s.version(), time, energy};
+    known_ = Known{s.version(), time, energy, momenta};
   }
   const VectorColumn<Real>& accelerations() const { return acceleration_; }
   Vec3<Real> acceleration(Index i) const { return acceleration_[i]; }
   Vec3<Real> rate(Index i) const { return rate_[i]; }
+  Vec3<Real> momentum(Index i) const { return momentum_[i]; }
   const Real& potential() const { return potential_; }
   const std::optional<Failure>& last_failure() const { return last_failure_; }
 
@@ -100,11 +108,12 @@ template <class F, class Real> class FieldForces {
   struct Known {
     std::uint64_t version;
     Real time;
-    bool energy;
+    bool energy, momenta;
   };
 
   F forces_;
   VectorColumn<Real> acceleration_{0}, rate_{0};  ///< F/m + q E/m, and q B/m
+  VectorColumn<Real> momentum_{0};                ///< q A, where somebody asked for it
   Real potential_ = Real(0);
   std::optional<Known> known_;
   bool moved_ = true;                              ///< since the last evaluation that was counted

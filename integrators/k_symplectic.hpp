@@ -49,6 +49,9 @@ struct KSymplecticOptions {
 /// known. The integrals are those of Gauss's quadrature: exact for polynomials, to rounding where B is smooth on the
 /// way of a step. Where it is not, what is lost is the symplectic form, not the order. Basic word X Y Z B Z Y X, which
 /// compositions join in X. Other forces do not depend on velocities.
+///
+/// Where the fields tell A the flows have their action, h m v_x^2/2 + int q A_x dx for X and - h (U + q phi) for B, and
+/// copies for observers that want it close with p/m = v + q A/m in the place of v: there the map is symplectic.
 /// @cost `nodes` evaluations of the fields for each of X, Y, Z, and one of all forces per B
 /// @source HeEtAl2017
 template <class F, class Real = double> class KSymplectic : public detail::ChargesInFields<F, Real> {
@@ -58,16 +61,17 @@ template <class F, class Real = double> class KSymplectic : public detail::Charg
 
   std::string name() const { return "k_symplectic"; }
   HamiltonianClaims claims() const {
-    return this->with_forces(
-        {.alphabet = "BXYZ",
-         .timed = "Z",
-         .basic = "XYZBZYX",
-         .no_action = "its momenta are m v + q A, and steps know v alone, so the motion has no action here"});
+    return this->with_forces({.alphabet = "BXYZ", .timed = "Z", .basic = "XYZBZYX", .no_action = no_momenta_});
   }
   void bind(ParticleSystem<Real>& s);
   void open(ParticleSystem<Real>& /*inertial already*/) {}
-  void close(ParticleSystem<Real>& /*inertial already*/) {}
+  void close(ParticleSystem<Real>& s);
   void flow(char letter, ParticleSystem<Real>& s, const Real& h);
+  Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h);
+  void observe(std::optional<Request> wanted) {
+    Base::observe(wanted);
+    shows_momenta_ = wanted && wanted->action;
+  }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) {
     forces_.evaluate(s, true);
     return {kinetic_energy(s), forces_.potential()};
@@ -86,13 +90,16 @@ template <class F, class Real = double> class KSymplectic : public detail::Charg
   using Base = detail::ChargesInFields<F, Real>;
   using Base::forces_, Base::observing_;
 
-  void move_along(int axis, ParticleSystem<Real>& s, const Real& h);
+  void move_along(int axis, ParticleSystem<Real>& s, const Real& h, bool momenta);
 
   detail::FieldForces<F, Real> on_lines_;  ///< at the nodes of the lines along which particles move
   KSymplecticOptions options_;
   std::vector<Real> places_, weights_;  ///< in [0, 1]
   ParticleSystem<Real> there_;
   VectorColumn<Real> integrals_{0};
+  std::vector<Real> momenta_;  ///< means of q A along the lines, in their direction
+  std::string no_momenta_;     ///< which field does not tell A; empty: they all do
+  bool shows_momenta_ = false;
 };
 
 template <class Real> AnyHamiltonian<Real> KSymplecticOptions::split(ForceField<Real> forces) const {

@@ -47,6 +47,16 @@ template <class Real, int width = 3> struct Difference {
   }
 };
 
+/// Whether a magnetic field is part of the momenta: the map shows p/m = v + q A/m in the place of v.
+template <class Real> bool has_field_momenta(const Snapshot<Real>& now) {
+  const ParticleSystem<Real>&seen = now.state(), &mapped = now.mapped();
+  for (Index i = 0; i < seen.size(); ++i) {
+    const Vec3<Real> v = seen.velocities()[i], x = seen.positions()[i];
+    if (v != mapped.velocities()[i] && x == mapped.positions()[i]) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 double shadow_weight(std::int64_t k, std::int64_t a, std::int64_t b) {
@@ -96,9 +106,10 @@ template <class Real> void ShadowHamiltonian<Real>::begin(const Snapshot<Real>& 
   time_unit_ = std::string(now.units().time);
   // Positions are rounded at every step, so that momentum times distance is uncertain in proportion.
   const ParticleSystem<Real>& s = now.state();
+  const auto& momenta = std::as_const(now.mapped()).velocities();  // by mass
   double distance = sum_over<double>(s.size(), [&](Index i) {
     using std::sqrt;
-    return static_cast<double>(s.masses()[i] * sqrt(norm2(s.positions()[i]) * norm2(s.velocities()[i])));
+    return static_cast<double>(s.masses()[i] * sqrt(norm2(s.positions()[i]) * norm2(momenta[i])));
   });
   if (has_bodies(s)) {  // |q| |p| = 2 |S|
     const auto& spin = s.template column<BodySpin>();
@@ -125,15 +136,15 @@ template <class Real> double ShadowHamiltonian<Real>::rounding() const {
 }
 
 /// Differences of the energy along a displacement of every particle, against the force: a few looks find what is none.
-/// Forces of constraints are no gradients, but do no work along the velocities.
+/// Forces of constraints and of magnetic fields are no gradients, but do no work along the velocities.
 template <class Real> void ShadowHamiltonian<Real>::compare_force_and_energy(const Snapshot<Real>& now) {
   using std::abs, std::sqrt;
   const ParticleSystem<Real>& s = now.state();
   const VectorColumn<Real>& a = now.accelerations();
   // Along the force turned by some angle in each plane, which both a force too long and one askew betray.
-  const bool constrained = now.claims().constraints > 0;
+  const bool constrained = now.claims().constraints > 0, in_field = has_field_momenta(now);
   const auto direction = [&](Index i) {
-    if (constrained) return Vec3<Real>(s.velocities()[i]);
+    if (constrained || in_field) return Vec3<Real>(s.velocities()[i]);
     const Vec3<Real> f = a[i];
     return Vec3<Real>(f[0] + Real(0.7) * f[1] - Real(0.4) * f[2], f[1] - Real(0.7) * f[0] + Real(0.3) * f[2],
                       f[2] + Real(0.4) * f[0] - Real(0.3) * f[1]);

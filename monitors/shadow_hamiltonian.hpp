@@ -25,7 +25,7 @@ double shadow_weight(std::int64_t k, std::int64_t a, std::int64_t b);
 /// (docs/theory/shadow.md). The value belongs to the middle of the k + 1 steps. It is orders of magnitude flatter than
 /// the energy, so errors that hide in the energy's oscillation show: too large a step, loose constraints, a force that
 /// is no gradient. Only differences of positions enter: no reference, no loss far from the origin. Of a system with
-/// coordinates and momenta, q and p are its variables.
+/// coordinates and momenta, q and p are its variables; of charges in magnetic fields p is m v + q A.
 /// @cost k inner products of length 3 n a step, the energy of every kick; 6 n (k + 1) numbers. At a cadence longer than
 ///       k + 1 steps it looks at k + 1 steps in a row each time, and costs nothing between
 /// @source SkeelHardy2001, EngleSkeelDrees2005
