@@ -5,7 +5,9 @@
 #include "engine/description.hpp"
 #include "engine/erasure.hpp"
 #include "engine/proper_velocity.hpp"
+#include "engine/word.hpp"
 #include "forces/sum.hpp"
+#include "integrators/charge_lanes.hpp"
 #include "integrators/field_forces.hpp"
 #include "integrators/gyration.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -18,6 +20,7 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace noether {
 
@@ -101,6 +104,8 @@ struct ChargedParticlesOptions {
 ///
 ///     A:  x -> x + h u/gamma    B:  u' = F/m + q E/m + u x Omega/gamma by `relativistic`    H = sum m c^2 (gamma - 1)
 ///
+/// Where nothing but fields of closed forms acts (uniform, gradient, dipole, tokamak, trap), 64 charges at a time make
+/// many steps in lanes, with the bits of letter by letter.
 /// @cost one evaluation of the fields and forces per B; 40 operations a particle for the turn, and with `exact` a sine
 /// @source Boris1970, QinEtAl2013, HeEtAl2015, Vay2008, HigueraCary2017, ZenitaniKato2020
 template <class F, class Real = double> class ChargedParticles : public detail::ChargesInFields<F, Real> {
@@ -126,7 +131,8 @@ template <class F, class Real = double> class ChargedParticles : public detail::
          .coordinates = std::uint8_t(relativistic() ? proper_velocities : 0),
          .inertial = !relativistic(),
          .keeps_momentum = !relativistic(),  // of m v, which is what is watched
-         .keeps_angular_momentum = !relativistic()});
+         .keeps_angular_momentum = !relativistic(),
+         .steps_at_once = steps_at_once()});
   }
 
   /// @throws Error  without a speed of light that a relativistic run needs, and for particles as fast as it
@@ -134,6 +140,8 @@ template <class F, class Real = double> class ChargedParticles : public detail::
   void open(ParticleSystem<Real>& s);
   void close(ParticleSystem<Real>& s);
   void flow(char letter, ParticleSystem<Real>& s, const Real& h);
+  /// Whole steps: where there is nothing but fields of closed forms, in lanes, each charge for many steps.
+  Advance run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span);
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s);
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a);
   void save(SavedState& saved, const std::string& prefix) const;
@@ -152,10 +160,20 @@ template <class F, class Real = double> class ChargedParticles : public detail::
   void drift(ParticleSystem<Real>& s, const Real& h);
   void kick(ParticleSystem<Real>& s, const Real& h);
   Vec3<Real> pushed(const Vec3<Real>& u, Index i, const Real& h) const;
+  void bind_lanes(const ParticleSystem<Real>& s);
+  std::int64_t steps_at_once() const {
+    if constexpr (has_lanes) return lanes_.steps_at_once();
+    return 1;
+  }
+
+  static constexpr bool has_lanes = std::is_same_v<Real, double>;
+  struct NoLanes {};
 
   ChargedParticlesOptions options_;
   GyrationAngle<Real> angle_;
   Real c_ = Real(0);  ///< speed of light, where it matters
+  std::conditional_t<has_lanes, ChargeLanes, NoLanes> lanes_;
+  std::vector<ChargeLetter> letters_;  ///< of the steps that lanes make at once
 };
 
 template <class Real> AnyHamiltonian<Real> ChargedParticlesOptions::split(ForceField<Real> forces) const {

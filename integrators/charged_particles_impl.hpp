@@ -7,23 +7,60 @@
 #include "forces/speed_of_light.hpp"
 #include "numbers/parallel.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace noether {
 
 template <class F, class Real> void ChargedParticles<F, Real>::bind(ParticleSystem<Real>& s) {
   forces_.bind(s);
-  if (!relativistic()) return;
+  if (!relativistic()) return bind_lanes(s);
   if constexpr (InLanes<Real>) {
     throw Error("relativistic charges are stepped one system at a time; run these systems one by one");
   }
   c_ = speed_of_light_in(s, options_.c, "charged_particles");
+  bind_lanes(s);
   if (s.phase().coordinates != 0) return;
   for (Index i = 0; i < s.size(); ++i) {
     const auto v = whole_velocity(s, i);
     if (norm2(v) < c_ * c_) continue;
     throw Error("'" + s.name(i) + "' is as fast as light or faster; speeds below c are expected");
   }
+}
+
+template <class F, class Real> void ChargedParticles<F, Real>::bind_lanes(const ParticleSystem<Real>& s) {
+  if constexpr (has_lanes) {
+    LanePush push = options_.rotation == Rotation::exact ? LanePush::exact : LanePush::cycles;
+    if (options_.relativistic == Relativistic::boris) push = LanePush::relativistic_boris;
+    if (options_.relativistic == Relativistic::vay) push = LanePush::vay;
+    if (options_.relativistic == Relativistic::higuera_cary) push = LanePush::higuera_cary;
+    lanes_.bind(forces_.forces(), s, {.push = push, .angle = angle_, .c = c_});
+  }
+}
+
+template <class F, class Real>
+Advance ChargedParticles<F, Real>::run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+  if constexpr (has_lanes) {
+    if (lanes_.known()) {
+      Advance done;
+      while (done.steps < span.steps && !(done.steps > 0 && span.asked_to_stop())) {
+        const std::int64_t steps = std::min(lanes_.steps_at_once(), span.steps - done.steps);
+        letters_.clear();
+        for (std::int64_t k = 0; k < steps; ++k) {
+          word.step(s.phase(), [&](char letter, const Real& weight, const Real& /*fraction*/) {
+            letters_.push_back({letter, weight * s.clock().dt()});
+            letter == 'A' ? forces_.note_move() : forces_.count();
+          });
+          s.clock().tick(Real(0));
+        }
+        lanes_.follow(s, letters_);
+        done.steps += steps;
+      }
+      return done;
+    }
+  }
+  return walk_letters(*this, word, s, span, [&](char letter, const Real& h) { flow(letter, s, h); });
 }
 
 template <class F, class Real> void ChargedParticles<F, Real>::open(ParticleSystem<Real>& s) {

@@ -44,6 +44,11 @@ template <class Real> class GyrationAngle {
     return cycles_ == 0 ? exact(h, rate2) : in_cycles(h, rate2);
   }
 
+  std::int64_t cycles() const { return cycles_; }  ///< 0: the exact angle
+  std::int64_t terms() const { return terms_; }
+  /// Of tan x = sum tangent_k x^(2 k + 1).
+  const std::array<Real, 8>& tangent() const { return tangent_; }
+
  private:
   static TurnCoefficients<Real> exact(const Real& h, const Real& rate2) {
     using std::sqrt;
