@@ -16,11 +16,26 @@ namespace methods {
 std::span<const MethodInfo* const> all() {
   static const std::vector<const MethodInfo*> list = [] {
     std::vector<const MethodInfo*> every;
-    for (const auto& family :
-         {runge_kutta_list(), collocation_list(), encke_list(), wide_gauss_list(), nystrom_list(), extrapolation_list(),
-          multistep_list(), diagonally_implicit_list(), newmark_list(), rosenbrock_list(), bdf_list(), hbvm_list(),
-          discrete_gradient_list(), simo_tarnow_wong_list(), rkmk_list(), exponential_list(), variational_list(),
-          extended_space_list(), boris_sdc_list()}) {
+    for (const auto& family : {runge_kutta_list(),
+                               collocation_list(),
+                               encke_list(),
+                               wide_gauss_list(),
+                               nystrom_list(),
+                               extrapolation_list(),
+                               multistep_list(),
+                               diagonally_implicit_list(),
+                               newmark_list(),
+                               rosenbrock_list(),
+                               bdf_list(),
+                               hbvm_list(),
+                               discrete_gradient_list(),
+                               simo_tarnow_wong_list(),
+                               rkmk_list(),
+                               exponential_list(),
+                               variational_list(),
+                               weber_list(),
+                               extended_space_list(),
+                               boris_sdc_list()}) {
       for (const MethodInfo& info : family) every.push_back(&info);
     }
     return every;

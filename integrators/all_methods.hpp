@@ -51,6 +51,7 @@ std::span<const MethodInfo> rkmk_list();
 std::span<const MethodInfo> exponential_list();
 std::span<const MethodInfo> magnus_list();
 std::span<const MethodInfo> variational_list();
+std::span<const MethodInfo> weber_list();
 std::span<const MethodInfo> extended_space_list();
 
 }  // namespace methods

@@ -66,6 +66,14 @@ std::optional<Failure> failure_at(VectorField<Real>& field, const Real& t, const
   return field.failure();
 }
 
+/// Why the end of a step over a Lagrangian has no velocity: masses may have become negative on the way.
+template <class Real>
+std::optional<Failure> failure_of_end(VectorField<Real>& field, const Real& t, const Vector<Real>& y) {
+  auto* const lagrangian = LagrangianField<Real>::behind(field);
+  if (lagrangian == nullptr || !lagrangian->has_hamiltonian()) return {};
+  return lagrangian->check_velocity(t, y);
+}
+
 }  // namespace
 
 template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
@@ -144,6 +152,8 @@ template <class Real> Advance Classical<Real>::advance(ParticleSystem<Real>& s, 
       const bool spoiled = made.failure || !y_.allFinite();
       made.failure = spoiled ? field_->failure() : failure_at(*field_, Real(t + Real(most)), y_);
     }
+    // Stages may not have come so far as the end.
+    if (!made.failure) made.failure = failure_of_end(*field_, Real(t + Real(made.h)), y_);
     if (made.failure) {
       failure_ = std::move(made.failure);
       done.failure = &*failure_;

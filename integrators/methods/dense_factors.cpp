@@ -36,12 +36,6 @@ template <class Real> bool DenseFactors<Real>::compute(const Matrix<Real>& matri
   return regular;
 }
 
-template <class Real> bool DenseFactors<Real>::has_negative_determinant() const {
-  bool negative = solver_->lu.permutationP().determinant() < 0;
-  for (Index i = 0; i < solver_->lu.rows(); ++i) negative = negative != (solver_->lu.matrixLU()(i, i) < Real(0));
-  return negative;
-}
-
 template <class Real> void DenseFactors<Real>::solve(const Vector<Real>& right, Vector<Real>& x) const {
   x.noalias() = solver_->lu.solve(right);
 }

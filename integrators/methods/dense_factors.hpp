@@ -22,8 +22,6 @@ template <class Real> class DenseFactors {
   void resize(Index n);
   /// @return whether the matrix is regular
   bool compute(const Matrix<Real>& matrix);
-  /// Whether the determinant is below 0.
-  bool has_negative_determinant() const;
   /// x = M^-1 right; x may not be `right`.
   void solve(const Vector<Real>& right, Vector<Real>& x) const;
 

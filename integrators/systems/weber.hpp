@@ -3,6 +3,7 @@
 
 #include "engine/description.hpp"
 #include "engine/sums.hpp"
+#include "integrators/systems/charges_in_space.hpp"
 #include "integrators/variational/lagrangian_system.hpp"
 
 #include <cmath>
@@ -38,35 +39,68 @@ struct Weber {
                        field<&Weber::k>("k", "energy length", "factor of Coulomb's law"),
                        field<&Weber::c>("c", "length/time", "speed of light"));
   }
-  /// @throws Error  for lists of different lengths, masses and speeds of light that are not above 0, and two charges at
-  ///   one place
-  void check() const;
+  /// @throws Error  as `check_charges`
+  void check() const { check_charges(lists()); }
 
   Index size() const { return 3 * std::ssize(masses); }
   /// Positions and p = dL/dv.
   std::vector<double> start() const;
-  std::vector<std::string> names() const;
+  std::vector<std::string> names() const { return names_of_charges(masses.size()); }
+  std::vector<Symmetry> symmetries() const { return symmetries_of_charges(); }
 
   template <class Real> Real lagrangian(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& v) const {
-    const Index n = std::ssize(masses);
-    const auto place = [](const Vector<Real>& of, Index i) {
-      return Vec3<Real>(of[3 * i], of[3 * i + 1], of[3 * i + 2]);
-    };
-    return sum_over<Real>(n, [&](Index i) {
-      const Vec3<Real> x = place(q, i), w = place(v, i);
+    return sum_over<Real>(std::ssize(masses), [&](Index i) {
+      const Vec3<Real> x = of_charge(q, i), w = of_charge(v, i);
       const Real of_pairs = sum_over<Real>(
-          i, [&](Index j) { return pair(i, j, Vec3<Real>(x - place(q, j)), Vec3<Real>(w - place(v, j))); });
+          i, [&](Index j) { return pair(i, j, Vec3<Real>(x - of_charge(q, j)), Vec3<Real>(w - of_charge(v, j))); });
       return Real(masses[static_cast<std::size_t>(i)]) * norm2(w) / Real(2) - of_pairs;
     });
   }
 
+  /// r'' of each pair, which the force contains; pair (i, j < i) is number i (i - 1)/2 + j.
+  Index second_rates() const { return std::ssize(masses) * (std::ssize(masses) - 1) / 2; }
+  /// r'' = (v^2 - r'^2 + x . a) / r.
+  template <class Real>
+  void find_second_rates(const Vector<Real>& q, const Vector<Real>& v, const Vector<Real>& a, Vector<Real>& w) const {
+    for (Index i = 1, place = 0; i < std::ssize(masses); ++i) {
+      for (Index j = 0; j < i; ++j, ++place) {
+        const Vec3<Real> x = of_charge(q, i) - of_charge(q, j), u = of_charge(v, i) - of_charge(v, j),
+                         b = of_charge(a, i) - of_charge(a, j);
+        const PairPlace<Real> at = place_of_pair(x);
+        const Real rate = dot(at.direction, u);
+        w[place] = (norm2(u) - rate * rate) / at.distance + dot(at.direction, b);
+      }
+    }
+  }
+  /// Weber's force, (k e e'/r^2) (1 - r'^2/(2 c^2) + r r''/c^2) along each pair, over the masses.
+  template <class Real>
+  void acceleration_with(const Real& /*t*/, const Vector<Real>& q, const Vector<Real>& v, const Vector<Real>& w,
+                         Vector<Real>& a) const {
+    const Real square(Real(c) * Real(c));
+    a.setZero();
+    for (Index i = 1, place = 0; i < std::ssize(masses); ++i) {
+      for (Index j = 0; j < i; ++j, ++place) {
+        const PairPlace<Real> at = place_of_pair(Vec3<Real>(of_charge(q, i) - of_charge(q, j)));
+        const Real r = at.distance, rate = dot(at.direction, Vec3<Real>(of_charge(v, i) - of_charge(v, j)));
+        const Real force = coupling<Real>(i, j) / (r * r) * (Real(1) + (r * w[place] - rate * rate / Real(2)) / square);
+        a.template segment<3>(3 * i) += force * at.direction;
+        a.template segment<3>(3 * j) -= force * at.direction;
+      }
+    }
+    for (Index i = 0; i < std::ssize(masses); ++i)
+      a.template segment<3>(3 * i) /= Real(masses[static_cast<std::size_t>(i)]);
+  }
+
  private:
+  ChargeLists lists() const { return {masses, charges, positions, velocities, k, c}; }
+  template <class Real> Real coupling(Index i, Index j) const {
+    return Real(k * charges[static_cast<std::size_t>(i)] * charges[static_cast<std::size_t>(j)]);
+  }
   /// The summand of a pair, by where one is from the other, and by how fast that changes.
   template <class Real> Real pair(Index i, Index j, const Vec3<Real>& x, const Vec3<Real>& v) const {
     using std::sqrt;
     const Real square = norm2(x), along = dot(x, v), rate = Real(1) / (Real(2) * Real(c) * Real(c));
-    const Real coupling = Real(k * charges[static_cast<std::size_t>(i)] * charges[static_cast<std::size_t>(j)]);
-    return coupling / sqrt(square) * (Real(1) + rate * along * along / square);
+    return coupling<Real>(i, j) / sqrt(square) * (Real(1) + rate * along * along / square);
   }
 };
 

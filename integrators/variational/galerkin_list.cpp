@@ -50,7 +50,7 @@ MethodInfo lobatto_path(std::string_view name, std::string_view summary, int nod
 
 std::span<const MethodInfo> variational_list() {
   static const MethodInfo list[] = {
-      galerkin_info("variational_midpoint", "galerkin_gauss_1",
+      galerkin_info("variational_midpoint", "galerkin_gauss_1 weber_weak",
                     "the action of a step by the midpoint rule, made stationary: implicit_midpoint over any Lagrangian",
                     "a Lagrangian of your own, robust at low order, stiff motion too", 2, never, true),
       gauss_path("galerkin_gauss_2", "the action of a quadratic path by 2 nodes of Gauss, made stationary", 2),

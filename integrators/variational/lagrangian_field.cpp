@@ -1,5 +1,7 @@
 #include "integrators/variational/lagrangian_field.hpp"
 
+#include "integrators/methods/inertia.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -67,16 +69,56 @@ bool LagrangianField<Real>::correct_velocity(const Real& t, const Vector<Real>& 
   return false;
 }
 
-/// Of the matrix that was factorized last.
-template <class Real> bool LagrangianField<Real>::keeps_sign() {
-  const bool negative = factors_.has_negative_determinant();
+/// Of the tangent that was found last.
+template <class Real> bool LagrangianField<Real>::keeps_signs() {
+  const std::optional<Index> negative = negative_eigenvalues(tangent_.momentum_v, eliminated_);
+  if (!negative) return true;  // no numbers have a failure of their own
   if (!negative_) negative_ = negative;
-  return *negative_ == negative;
+  return *negative_ == *negative;
 }
+
+template <class Real> Failure LagrangianField<Real>::changed_signs(const Vector<Real>& q) const {
+  return {Outcome::Kind::solver_failure, -1, "velocity",
+          fmt::format("the determinant of d^2L/dq'^2 has changed its sign before {}: masses that depend on "
+                      "the coordinates have become negative, and no motion goes there",
+                      place_text(q))};
+}
+
+namespace {
+Failure no_inverse(const std::string& what, const std::string& place) {
+  return {Outcome::Kind::solver_failure, -1, "velocity",
+          fmt::format("the Lagrangian gives no {} at {}: d^2L/dq'^2 has no inverse there", what, place)};
+}
+}  // namespace
 
 template <class Real>
 std::optional<Failure> LagrangianField<Real>::velocity(const Real& t, const Vector<Real>& q, const Vector<Real>& p,
                                                        Vector<Real>& v) {
+  const bool known = known_v_.size() == q.size() && known_t_ == t && known_q_ == q && known_p_ == p;
+  if (known) {
+    v = known_v_;
+    return {};
+  }
+  std::optional<Failure> failure = find_velocity(t, q, p, v);
+  if (failure) return failure;
+  known_t_ = t;
+  known_q_ = q;
+  known_p_ = p;
+  known_v_ = v;
+  return {};
+}
+
+template <class Real>
+std::optional<Failure> LagrangianField<Real>::check_velocity(const Real& t, const Vector<Real>& y) {
+  const Index n = coordinates();
+  q_ = y.head(n);
+  p_ = y.tail(n);
+  return velocity(t, q_, p_, v_);
+}
+
+template <class Real>
+std::optional<Failure> LagrangianField<Real>::find_velocity(const Real& t, const Vector<Real>& q, const Vector<Real>& p,
+                                                            Vector<Real>& v) {
   constexpr int most = 200;
   const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
   v.setZero(q.size());
@@ -86,12 +128,7 @@ std::optional<Failure> LagrangianField<Real>::velocity(const Real& t, const Vect
   bool renew = true;
   for (int made = 0; made < most; ++made) {
     const bool corrected = correct_velocity(t, q, p, renew, v);
-    if (made == 0 && !keeps_sign()) {
-      return Failure{Outcome::Kind::solver_failure, -1, "velocity",
-                     fmt::format("the determinant of d^2L/dq'^2 has changed its sign before {}: masses that depend on "
-                                 "the coordinates have become negative, and no motion goes there",
-                                 place_text(q))};
-    }
+    if (made == 0 && !keeps_signs()) return changed_signs(q);
     if (!corrected) break;
     const double change = size_of(update_), size = size_of(v);
     if (change == 0 || is_rounding(off_, p)) return {};
@@ -100,9 +137,36 @@ std::optional<Failure> LagrangianField<Real>::velocity(const Real& t, const Vect
     renew = !(change < 0.01 * before);  // else the same matrix does what is left
     before = change;
   }
-  return Failure{Outcome::Kind::solver_failure, -1, "velocity",
-                 fmt::format("the Lagrangian gives no velocity for the momentum at {}: d^2L/dq'^2 has no inverse there",
-                             place_text(q))};
+  return no_inverse("velocity for the momentum", place_text(q));
+}
+
+template <class Real>
+std::optional<Failure> LagrangianField<Real>::solve_acceleration(const Real& t, const Vector<Real>& q,
+                                                                 const Vector<Real>& v, bool renew, Vector<Real>& a) {
+  if (renew) {
+    find_tangent(t, q, v, tangent_);
+    if (!keeps_signs()) return changed_signs(q);
+    if (!factors_.compute(tangent_.momentum_v)) return no_inverse("acceleration", place_text(q));
+  }
+  terms(t, q, v, terms_);
+  off_ = terms_.force;
+  still_.setZero(q.size());
+  terms_along(t, q, v, Real(1), v, still_, terms_);
+  off_ -= terms_.momentum;
+  factors_.solve(off_, a);
+  return {};
+}
+
+template <class Real>
+void LagrangianField<Real>::find_second_rates(const Vector<Real>& /*q*/, const Vector<Real>& /*v*/,
+                                              const Vector<Real>& /*a*/, Vector<Real>& /*w*/) {
+  throw LogicError("second derivatives in a force were requested from a Lagrangian that has none");
+}
+
+template <class Real>
+void LagrangianField<Real>::acceleration_with(const Real& /*t*/, const Vector<Real>& /*q*/, const Vector<Real>& /*v*/,
+                                              const Vector<Real>& /*w*/, Vector<Real>& /*a*/) {
+  throw LogicError("a force with second derivatives was requested from a Lagrangian that has none");
 }
 
 template <class Real> void LagrangianField<Real>::evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) {

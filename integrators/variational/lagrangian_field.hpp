@@ -48,14 +48,34 @@ template <class Real> class LagrangianField : public VectorField<Real> {
   virtual void terms_along(const Real& t, const Vector<Real>& q, const Vector<Real>& v, const Real& dt,
                            const Vector<Real>& dq, const Vector<Real>& dv, LagrangianTerms<Real>& out) = 0;
 
-  /// v(t, q, p), the root of p = dL/dq' that continues from rest, by Newton's iteration to rounding; not counted. The
-  /// determinant of d^2L/dq'^2 at rest has the sign that it had first since `bind`: a motion does not go through 0.
+  /// v(t, q, p), the root of p = dL/dq' that continues from rest, by Newton's iteration to rounding; not counted. At
+  /// rest d^2L/dq'^2 has as many negative eigenvalues as it had first since `bind`: a motion does not go through 0.
   /// @return why there is none
+  /// @cost nothing where it was asked last
   std::optional<Failure> velocity(const Real& t, const Vector<Real>& q, const Vector<Real>& p, Vector<Real>& v);
+  /// Why y = (q, p), where a step has ended, has no velocity.
+  std::optional<Failure> check_velocity(const Real& t, const Vector<Real>& y);
+  /// q'' = a(t, q, v), counted as one evaluation, from L_vv a = f - L_vq v - L_vt.
+  /// @param renew  whether the masses L_vv are those of another place than in the call before
+  /// @return why there is none, as for `velocity`
+  std::optional<Failure> solve_acceleration(const Real& t, const Vector<Real>& q, const Vector<Real>& v, bool renew,
+                                            Vector<Real>& a);
+
+  /// How many second derivatives w its force contains, such as r'' of each pair; 0: it does not tell that.
+  virtual Index second_rates() const { return 0; }
+  /// w at (q, v) for q'' = a, shape (second_rates). @throws LogicError  where there are none
+  virtual void find_second_rates(const Vector<Real>& q, const Vector<Real>& v, const Vector<Real>& a, Vector<Real>& w);
+  /// q'' for given w, shape (n): what the force with w in it makes of constant masses, not counted. @throws LogicError
+  /// where there are none
+  virtual void acceleration_with(const Real& t, const Vector<Real>& q, const Vector<Real>& v, const Vector<Real>& w,
+                                 Vector<Real>& a);
 
  protected:
   /// To be called by `bind`.
-  void forget_sign() { negative_.reset(); }
+  void forget_signs() {
+    negative_.reset();
+    known_v_.resize(0);
+  }
   virtual void find_terms(const Real& t, const Vector<Real>& q, const Vector<Real>& v, LagrangianTerms<Real>& out) = 0;
   virtual void find_tangent(const Real& t, const Vector<Real>& q, const Vector<Real>& v,
                             LagrangianTangent<Real>& out) = 0;
@@ -63,14 +83,19 @@ template <class Real> class LagrangianField : public VectorField<Real> {
   void evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) override;
 
  private:
+  std::optional<Failure> find_velocity(const Real& t, const Vector<Real>& q, const Vector<Real>& p, Vector<Real>& v);
   bool correct_velocity(const Real& t, const Vector<Real>& q, const Vector<Real>& p, bool renew, Vector<Real>& v);
-  bool keeps_sign();
+  bool keeps_signs();
+  Failure changed_signs(const Vector<Real>& q) const;
 
   LagrangianTerms<Real> terms_;
   LagrangianTangent<Real> tangent_;
   DenseFactors<Real> factors_;
-  std::optional<bool> negative_;  ///< the determinant of d^2L/dq'^2, since `bind`
-  Vector<Real> q_, p_, v_, off_, update_, tried_;
+  std::optional<Index> negative_;  ///< eigenvalues of d^2L/dq'^2, since `bind`
+  Matrix<Real> eliminated_;        ///< work of their count
+  Vector<Real> q_, p_, v_, off_, update_, tried_, still_;
+  Real known_t_ = Real(0);  ///< of the last velocity that was found
+  Vector<Real> known_q_, known_p_, known_v_;
 };
 
 extern template class LagrangianField<double>;

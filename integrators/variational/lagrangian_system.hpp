@@ -39,6 +39,15 @@ namespace noether {
 ///     std::vector<std::string> names() const;                    // of all 2 n
 ///     std::vector<double> exact(double t) const;                 // from `start()` at time 0
 ///
+/// Where L is m q'^2/2 with constant masses and terms whose forces contain second derivatives w, linearly, it may tell
+/// these apart, for methods that treat them each in its own way (`weber_extrapolated`):
+///
+///     Index second_rates() const;                                // how many w, such as r'' of each pair
+///     template <class Real> void find_second_rates(const Vector<Real>& q, const Vector<Real>& v,
+///                                                  const Vector<Real>& a, Vector<Real>& w) const;
+///     template <class Real> void acceleration_with(const Real& t, const Vector<Real>& q, const Vector<Real>& v,
+///                                                  const Vector<Real>& w, Vector<Real>& a) const;   // force / masses
+///
 /// All derivatives are found by dual numbers, nested where they are second ones.
 /// @source MarsdenWest2001
 template <class S, class Real>
@@ -119,7 +128,7 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
       throw Error(fmt::format("system '{}' has {} variables, but it was given {} and {} particles",
                               detail::name_of(system_), size(), s.variables().size(), s.size()));
     }
-    this->forget_sign();
+    this->forget_signs();
     if (!detail::depends_on_time<S>()) check_time(s);
   }
   Index size() const override { return 2 * Index(system_.size()); }
@@ -150,6 +159,23 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
       out.momentum[i] = along_.momentum[i].slope[0];
       out.force[i] = along_.force[i].slope[0];
     }
+  }
+
+  Index second_rates() const override {
+    if constexpr (tells_second_rates) return system_.second_rates();
+    return 0;
+  }
+  void find_second_rates(const Vector<Real>& q, const Vector<Real>& v, const Vector<Real>& a,
+                         Vector<Real>& w) override {
+    if constexpr (!tells_second_rates) return LagrangianField<Real>::find_second_rates(q, v, a, w);
+    w.resize(second_rates());
+    if constexpr (tells_second_rates) system_.find_second_rates(q, v, a, w);
+  }
+  void acceleration_with(const Real& t, const Vector<Real>& q, const Vector<Real>& v, const Vector<Real>& w,
+                         Vector<Real>& a) override {
+    if constexpr (!tells_second_rates) return LagrangianField<Real>::acceleration_with(t, q, v, w, a);
+    a.resize(q.size());
+    if constexpr (tells_second_rates) system_.acceleration_with(t, q, v, w, a);
   }
 
   bool has_derivative() const override { return true; }
@@ -220,6 +246,7 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
   static constexpr bool has_force = requires(const S& system, const Real& t, const Vector<Real>& q, Vector<Real>& f) {
     system.force(t, q, q, f);
   };
+  static constexpr bool tells_second_rates = requires(const S& system) { system.second_rates(); };
   bool forced() const {
     if constexpr (has_force && requires { system_.forced(); }) return system_.forced();
     return has_force;
