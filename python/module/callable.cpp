@@ -28,6 +28,17 @@ Registry& registry() {
   return one;
 }
 
+/// Accelerations that a function fills, kept between evaluations: making the column takes longer than a short force.
+struct Scratch {
+  VectorColumn<double> a;
+
+  VectorColumn<double>& of(Index n) {
+    if (a.size() != n) a = VectorColumn<double>(n);
+    a.set_zero();
+    return a;
+  }
+};
+
 using Array2 = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
 using Array1 = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
 using ReadOnly2 = nb::ndarray<nb::numpy, const double, nb::ndim<2>>;
@@ -95,7 +106,7 @@ void UserForce::add_to(ForceSink<double>& out, const ParticleSystem<double>& s) 
   const Index n = s.size();
   const auto& x = s.positions();
   const auto& v = s.velocities();
-  VectorColumn<double> a(n);
+  VectorColumn<double>& a = out.workspace().get<Scratch>().of(n);
   double potential = 0;
   bool fine = true;
   if (callable->address() != nullptr) {
