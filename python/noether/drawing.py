@@ -5,8 +5,10 @@ import math
 
 from . import _core
 
-# Paul Tol's bright scheme, which people who see few colours tell apart: that of the reports of `noether compare`.
-COLOURS = ("#4477aa", "#ee6677", "#228833", "#b59f1d", "#2ea8c9", "#aa3377", "#777777")
+# Paul Tol's bright scheme, which people who see few colours tell apart: that of the reports of `noether compare`; and five
+# more for what is many.
+COLOURS = ("#4477aa", "#ee6677", "#228833", "#b59f1d", "#2ea8c9", "#aa3377", "#777777", "#d2722c", "#7b5ea7", "#4a9a8c",
+           "#8c564b", "#333333")
 MARKS = ("o", "s", "^", "D", "v")
 INK, SOFT, FAINT, PRIMARY = "#1a1a1a", "#5c5c5c", "#e4e4e4", "#e0a500"
 # Bodies that are called by a colour have it.

@@ -69,10 +69,15 @@ def convert(file, out, **options):
 def view(run, out=None):
     """A page that plays a run in a browser: the path of the page, which is beside the run unless `out` says where.
 
-    run : a Report, a RunFile, or the path of a run.h5. In a notebook use `nt.viewer.show`, which takes simulations too.
+    run : a Report, a RunFile, or the path of a run.h5; of a Simulation the page goes to a temporary folder unless told. In a
+        notebook use `nt.viewer.show`.
     """
     from .reports import Report, RunFile
 
+    if hasattr(run, "record_frames"):
+        from .viewer import page
+
+        return page(run, out)
     if isinstance(run, Report):
         run = run.run
     told, _ = _ask("view", run.path if isinstance(run, RunFile) else run, *(["--out", out] if out is not None else []))

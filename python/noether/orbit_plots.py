@@ -84,7 +84,7 @@ def _moments(what, frame, most=4000):
         return (numpy.zeros(1), numpy.asarray(what.positions)[None], numpy.asarray(what.velocities)[None],
                 numpy.asarray(what.masses), what.names, units_of(what))
     last = range(len(frames))[frame]
-    first = max(0, last + 1 - most)
+    first = max(0, last + 1 - max(1, min(most, 4_000_000 // len(frames.names))))
     times, x = numpy.asarray(frames.time[first:last + 1]), numpy.asarray(frames.positions[first:last + 1])
     v = None if frames.velocities is None else numpy.asarray(frames.velocities[first:last + 1])
     if hasattr(what, "record_frames") and last == len(frames) - 1 and what.time != times[-1]:  # where the run stands now
@@ -105,7 +105,7 @@ def orbits(what, *, bodies=None, about="auto", projection="xy", ellipses=True, f
     frame : the last frame that is drawn, at which ellipses touch; frames close in time are joined by cubics, others are dots
     names : whether there is a legend; more than 12 bodies have none
 
-    Costs up to 4000 frames in memory.
+    Costs up to 4000 frames in memory, of many bodies fewer.
     """
     import numpy
 
@@ -179,7 +179,7 @@ def positions(what, *, projection="xy", frame=-1, color=COLOURS[0], ax=None):
         raise ValueError(f"projection = {projection!r}; one of 'xy', 'xz', 'yz' is expected")
     run = run_of(what)
     frames = frames_of(run)
-    box = getattr(frames, "box", None)
+    box = getattr(run.frames if hasattr(run, "record_frames") else frames, "box", None)
     x = numpy.array(run.positions if frames is None and hasattr(run, "positions") else frames_needed(run).positions[frame])
     units = units_of(run)
     edges = None if box is None else numpy.asarray(box, dtype=float).reshape(-1)[-3:]
@@ -189,12 +189,17 @@ def positions(what, *, projection="xy", frame=-1, color=COLOURS[0], ax=None):
     depth = 3 - a - b
     extent = edges if edges is not None else numpy.maximum(x.max(0) - x.min(0), 1e-300)
     width = 0.75 * (float(numpy.prod(numpy.maximum(extent, 0.05 * extent.max()))) / len(x)) ** (1 / 3)
+    if edges is None and len(x) <= 2000:  # such as a chain, which fills no volume
+        apart = ((x[:, None] - x[None]) ** 2).sum(axis=2)
+        numpy.fill_diagonal(apart, numpy.inf)
+        width = min(width, 0.9 * math.sqrt(float(numpy.median(apart.min(axis=1)))))
+    flat = extent[depth] <= 1e-9 * extent.max()
     x = x[numpy.argsort(x[:, depth] if depth != 1 else -x[:, 1])]
     scale, length = length_scale(units, float(extent.max()))
     ax = axes_of(ax, (4.4, 4.4))
     discs = EllipseCollection(scale * width, scale * width, 0, units="xy", offsets=scale * x[:, [a, b]],
-                              transOffset=ax.transData, array=numpy.linspace(0, 1, len(x)), edgecolor="white", linewidth=0.4,
-                              cmap=LinearSegmentedColormap.from_list("depth", ["#eef2f7", color]))
+                              transOffset=ax.transData, array=numpy.linspace(1 if flat else 0, 1, len(x)), edgecolor="white", linewidth=0.4,
+                              clim=(0, 1), cmap=LinearSegmentedColormap.from_list("depth", ["#eef2f7", color]))
     ax.add_collection(discs)
     if edges is not None:
         ax.add_patch(Rectangle((0, 0), scale * edges[a], scale * edges[b], fill=False, edgecolor=SOFT, linewidth=0.8))
@@ -217,6 +222,8 @@ def elements(what, bodies=None, *, quantities=("a", "e", "inc"), about="auto", a
     quantities : of a, e, inc, Omega, omega, M, P, one or several
     about : as in `orbits`; there has to be one
     ax : axes, as many as there are quantities; one of them for one
+
+    Costs up to 20,000 frames in memory; of more, every so many-th is taken.
 
     @return the axes of one quantity, or an array of them
     """
@@ -243,7 +250,8 @@ def elements(what, bodies=None, *, quantities=("a", "e", "inc"), about="auto", a
     all_axes = numpy.atleast_1d(numpy.asarray(ax, dtype=object)).ravel()
     if len(all_axes) != len(wanted):
         raise ValueError(f"ax has {len(all_axes)} axes for {len(wanted)} quantities")
-    x, v = numpy.asarray(frames.positions[:]), numpy.asarray(frames.velocities[:])
+    every = slice(None, None, -(-len(frames) // 20_000))
+    x, v, times = (numpy.asarray(one[every]) for one in (frames.positions, frames.velocities, frames.time))
     scale, time = time_scale(frames.units, frames.time)
     units = {"a": _core.unit_names(frames.units)[0], "P": time, "e": "1"}
     colours = iter(COLOURS * (1 + len(frames.names) // len(COLOURS)))
@@ -257,7 +265,7 @@ def elements(what, bodies=None, *, quantities=("a", "e", "inc"), about="auto", a
         found["P"] = found["P"] / scale
         for axis, quantity in zip(all_axes, wanted):
             values = found[quantity]
-            axis.plot(against_time(axis, frames.units, frames.time), values, color=colour, lw=1.1,
+            axis.plot(against_time(axis, frames.units, times), values, color=colour, lw=1.1,
                       label=str(frames.names[body]) or str(body))
     for axis, quantity in zip(all_axes, wanted):
         axis.set_ylabel(with_unit(ELEMENT_NAMES[quantity], units.get(quantity, "deg")))

@@ -86,15 +86,20 @@ def monitor(run, name, *, quantities=None, ax=None):
         raise _core.Error(f"{name} has no {quantities!r}; it has: {', '.join(key for key, _ in series.flat())}")
     for k, (key, values) in enumerate(drawn[:MOST_NAMES]):
         ax.plot(times, values, color=COLOURS[k % len(COLOURS)], lw=1.1, label=key)
-    unit = _unit_of(units_of(run), series.dimensions.get(drawn[0][0].split(".")[0], ""))
+    unit = _unit_of(run, series, drawn[0][0].split(".")[0])
     ax.set_ylabel(with_unit(name.replace("_", " "), unit))
     if len(drawn) > 1:
         legend(ax)
     return ax
 
 
-def _unit_of(units, dimension):
-    return "" if units == "reduced" or dimension in ("", "1") else _core.unit_of(dimension, units)
+def _unit_of(run, series, quantity):
+    """The unit of what a monitor has told, where it has one."""
+    if hasattr(run, "_file"):
+        unit = run._file["noether/monitors"][series.monitor][quantity].attrs.get("noether_unit", b"1")
+        return unit.decode() if isinstance(unit, bytes) else str(unit)
+    dimension = series.dimensions.get(quantity, "")
+    return "1" if units_of(run) == "reduced" or dimension in ("", "1") else _core.unit_of(dimension, units_of(run))
 
 
 def variables(run, *, names=None, log_time=None, ax=None):
@@ -122,7 +127,7 @@ def variables(run, *, names=None, log_time=None, ax=None):
                              rasterized=True)
         ax.grid(False)
         ax.set_ylabel("variable")
-        ax.figure.colorbar(mesh, ax=ax, pad=0.02).outline.set_visible(False)
+        ax.figure.colorbar(mesh, ax=ax, pad=0.02, label="value").outline.set_visible(False)
         return ax
     largest = max(float(numpy.abs(values[keep][:, k]).max()) for k in chosen)
     for k in chosen:
@@ -295,19 +300,21 @@ def _time_name(comparison):
 def _choices(run):
     """Pictures that a run has what it takes for, the main one first: (name, function)."""
     have = monitors_of(run)
-    frames = frames_of(run) if hasattr(run, "series") or hasattr(run, "time") else None
-    system = "variables" in have or "noether/system/value" in getattr(run, "_file", {})
+    frames = frames_of(run)
+    bodies = frames if frames is not None else run if hasattr(run, "positions") else None
+    few, about = False, None
     chosen = []
-    if system:
+    if "variables" in have or "noether/system/value" in getattr(run, "_file", {}):
         chosen.append("variables")
-    elif hasattr(run, "add") or frames is not None or getattr(run, "_particles", None) is not None:
-        count = len(frames.names) if frames is not None else len(run.names)
-        crowd = count > MOST_NAMES and primary_of((frames or run).masses, (frames or run).names, "auto", run) is None
-        chosen.append("positions" if crowd or getattr(frames, "box", None) is not None else "orbits")
+    elif bodies is not None and getattr(run, "_system", None) is None:
+        few = len(bodies.names) <= MOST_NAMES
+        about = primary_of(bodies.masses, bodies.names, "auto", run)
+        in_box = getattr(run.frames if hasattr(run, "record_frames") else frames, "box", None) is not None
+        chosen.append("orbits" if not in_box and (few or about is not None) else "positions")
     if "energy" in have or "shadow_hamiltonian" in have:
         chosen.append("energies")
-    if chosen[:1] == ["orbits"] and frames is not None and len(frames) > 2 and frames.velocities is not None and primary_of(
-            frames.masses, frames.names, "auto", run) is not None:
+    if chosen[:1] == ["orbits"] and few and about is not None and frames is not None and len(frames) > 2 and (
+            frames.velocities is not None):
         chosen += ["a", "e", "inc"]
     chosen += [one for one in ("radial_distribution", "mean_square_displacement", "velocity_autocorrelation") if one in have]
     return chosen + [one for one in ("temperature", "pressure") if one in have]
@@ -327,6 +334,8 @@ def plot(run, *, what=None, ax=None):
 
     run = run_of(run)
     chosen = [what] if isinstance(what, str) else list(what) if what is not None else _choices(run)[:7]
+    if not chosen and getattr(run, "_system", None) is not None:
+        series_of(run, "variables")
     if not chosen:
         raise _core.Error("the run has nothing to show; add sim.record_frames(...), or sim.every(..., nt.Energy())")
     if ax is not None or len(chosen) == 1:

@@ -141,8 +141,8 @@ class FileFrames(Frames):
                       if "name" in group else [""] * self.positions.shape[1])
         units = file["noether"].attrs.get("units", b"reduced")
         self.units = units.decode() if isinstance(units, bytes) else str(units)
-        box = group["box"]
-        self.box = box["edges"][...] if "edges" in box and hasattr(box["edges"], "shape") else None
+        edges = group["box"].get("edges")  # of each frame: a box keeps its edges
+        self.box = None if edges is None else tuple(edges[...] if hasattr(edges, "shape") else edges["value"][0])
 
 
 class RunFile:

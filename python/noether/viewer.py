@@ -101,7 +101,9 @@ def _file_of(run, folder):
     if isinstance(run, Simulation):
         if not run._frame_cadences and "trajectory" in run._files:
             return run._files["trajectory"]
-        return _written(run, os.path.join(folder, "run.h5"))
+        place = os.path.join(folder, "simulation")  # is the title of the page, where the simulation has none
+        os.mkdir(place)
+        return _written(run, os.path.join(place, "run.h5"))
     path = os.fspath(run)
     return os.path.join(path, "run.h5") if os.path.isdir(path) else path
 

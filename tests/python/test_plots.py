@@ -212,3 +212,46 @@ def test_a_simulation_without_frames_says_how_to_get_them():
     with pytest.raises(nt.Error, match="record_frames"):
         plots.elements(sim)
     assert math.isfinite(plots.orbits(sim).get_xlim()[0])
+
+
+def test_boxes_and_frames_alone_are_enough(liquid, solar):
+    still = nt.Simulation(nt.Particles(nt.builders.Lattice(cells=[3, 3, 3], density=0.8, mass=1, temperature=1)),
+                          method="verlet", step=0.004)
+    still.add_force(nt.LennardJones(cutoff=2, cutoff_style="switch_c4", epsilon=1, sigma=1))
+    still.run(200)
+    ax = plots.positions(still)
+    edge = (108 / 0.8) ** (1 / 3)
+    assert ax.patches[0].get_width() == pytest.approx(edge)
+    assert 0 <= ax.collections[0].get_offsets().min() and ax.collections[0].get_offsets().max() <= edge
+    assert [one.get_ylabel() for one in plots.plot(solar.frames)][0] == "y from Sun (au)"
+    assert len(plots.plot(liquid.frames)) == 1
+
+
+def test_paths_and_reports_are_runs_too():
+    folder = run_of("figure_eight")
+    one, other = plots.plot(folder), plots.plot(nt.open_run(folder))
+    assert [ax.get_ylabel() for ax in one] == [ax.get_ylabel() for ax in other] == ["y", "relative error"]
+
+
+def test_users_axes_keep_their_style_and_other_figures_theirs(solar):
+    before = dict(matplotlib.rcParams)
+    figure, (left, right) = matplotlib.pyplot.subplots(1, 2)
+    plots.orbits(solar, ax=left)
+    plots.energies(solar, ax=right)
+    plots.energies(solar)
+    assert left.spines["top"].get_visible()
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_boxes_and_units_come_from_files_too(tmp_path):
+    report = nt.run("water_box", out=tmp_path / "water", until="0.02 ps")
+    assert len(report.frames.box) == 3 and 1.5 < report.frames.box[0] < 2.5
+    ax = plots.positions(report)
+    assert ax.patches[0].get_width() == pytest.approx(report.frames.box[0])
+    assert plots.monitor(report, "temperature").get_ylabel() == "temperature (K)"
+
+
+def test_what_systems_lack_is_told():
+    sim = nt.Simulation(system=nt.Robertson(), method="rodas_5p", rtol=1e-6)
+    with pytest.raises(nt.Error, match="no monitor variables"):
+        sim.plot()

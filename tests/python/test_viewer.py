@@ -100,3 +100,11 @@ def test_files_that_cannot_be_shown_are_told(tmp_path):
     sim.run(10)
     with pytest.raises(nt.FileError, match="nowhere"):
         nt.viewer.page(sim, tmp_path / "nowhere" / "view.html")
+
+
+def test_view_takes_a_simulation(tmp_path):
+    sim = liquid()
+    sim.record_frames(10)
+    sim.run(50)
+    told, _ = about(nt.view(sim, out=tmp_path / "view.html"))
+    assert about(nt.view(sim))[0] == told
