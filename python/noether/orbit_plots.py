@@ -97,7 +97,7 @@ def orbits(what, *, bodies=None, about="auto", projection="xy", ellipses=True, f
     """Paths of bodies and their osculating ellipses, on equal axes.
 
     what : a Simulation (its recorded frames, and where it stands), Particles, frames, a Report, a RunFile or a path
-    bodies : names or places of those that are drawn; default: all
+    bodies : names or places of those that are drawn; default: all. Inner planets alone are larger
     about : the body that positions are relative to, and ellipses go about; default: the heaviest where bodies attract each
         other and it has ten times the mass of all others; None: none
     projection : "xy", "xz", "yz" or "3d"
@@ -198,7 +198,8 @@ def positions(what, *, projection="xy", frame=-1, color=COLOURS[0], ax=None):
     scale, length = length_scale(units, float(extent.max()))
     ax = axes_of(ax, (4.4, 4.4))
     discs = EllipseCollection(scale * width, scale * width, 0, units="xy", offsets=scale * x[:, [a, b]],
-                              transOffset=ax.transData, array=numpy.linspace(1 if flat else 0, 1, len(x)), edgecolor="white", linewidth=0.4,
+                              transOffset=ax.transData, array=numpy.linspace(1 if flat else 0, 1, len(x)),
+                              edgecolor="white", linewidth=0.4,
                               clim=(0, 1), cmap=LinearSegmentedColormap.from_list("depth", ["#eef2f7", color]))
     ax.add_collection(discs)
     if edges is not None:
