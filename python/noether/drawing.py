@@ -58,12 +58,12 @@ def axes_of(ax, size=(5.6, 3.4), **options):
 def run_of(what):
     """A Simulation, RunFile or Frames, from these, a Report, or the path of a run.h5."""
     from . import reports
-    from .particles import Particles
+    from .particles import Bodies, Particles
     from .simulation import Simulation
 
     if isinstance(what, reports.Report):
         return what.run
-    if isinstance(what, (Simulation, Particles, reports.RunFile, reports.Frames)):
+    if isinstance(what, (Simulation, Particles, Bodies, reports.RunFile, reports.Frames)):
         return what
     if isinstance(what, (str, bytes)) or hasattr(what, "__fspath__"):
         return reports.open_run(what)

@@ -69,7 +69,7 @@ TEST_CASE("constants of nature are those of CODATA 2018, and of Gauss in the sol
   CHECK(units::si::k_B == 1.380649e-23);
   CHECK(units::solar::coulomb_constant == 2.5870659726489333e-82);
   CHECK(units::molecular::coulomb_constant == 138.93545764438204);
-  CHECK(units::si::coulomb_constant == 8987551792.2611713);  // 1/(4 pi epsilon_0), by 40 digits: 8987551792.26117215895...
+  CHECK(units::si::coulomb_constant == 8987551792.2611713);  // by 40 digits 8987551792.26117215895...
 }
 
 TEST_CASE("the units of a system are one in it, and their multiples have no rounding", "[units]") {
