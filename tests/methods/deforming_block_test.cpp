@@ -83,7 +83,7 @@ TEST_CASE("the tumbling cube: errors, slopes and what is kept, by the recorded f
     const char* method;
     double coarse, fine, slope, energy, angular_momentum;
   };
-  for (const Row& row : {Row{"simo_tarnow_wong", 0.05664, 0.01442, 1.97, 1.5e-14, 1e-14},
+  for (const Row& row : {Row{"simo_tarnow_wong", 0.05664, 0.01442, 1.97, 9e-15, 5e-15},
                          Row{"implicit_midpoint", 0.06907, 0.01739, 1.99, 0.0092, 1e-14}}) {
     INFO(row.method);
     const Kept coarse = follow(classical_over(soft, method(row.method)), cube, 0.1, 40);
@@ -110,8 +110,8 @@ TEST_CASE("a stiff cube at h omega = 8: energy and angular momentum are kept, lo
   const auto cube = turning_cube({1.05, 0.97, 1.02});
   const Kept exact = follow(classical_over(stiff, method("simo_tarnow_wong")), cube, 0.05, 60);
   CHECK_FALSE(exact.failure);
-  CHECK(exact.energy < 2e-14);
-  CHECK(exact.angular_momentum < 1e-14);
+  CHECK(exact.energy < 1e-14);
+  CHECK(exact.angular_momentum < 7e-15);
   const Kept midpoint = follow(classical_over(stiff, method("implicit_midpoint")), cube, 0.05, 60);
   CHECK_FALSE(midpoint.failure);
   CHECK(std::abs(midpoint.energy / 0.137 - 1) < 0.1);
@@ -202,11 +202,12 @@ TEST_CASE("a stiff block has the same steps for any number of threads", "[hypere
   CHECK(farthest(one, block) > 0.01);
 }
 
-TEST_CASE("a bent bar at h omega = 16 keeps energy and angular momentum over 16384 steps",
+TEST_CASE("a bent bar at h omega = 16 keeps energy and angular momentum over 100000 steps",
           "[hyperelastic][energy][.nightly]") {
-  const Kept kept = follow_bar({}, 16384);
+  const Kept kept = follow_bar({}, 100000);
   // A walk of roundings: far below what the steps would add up to.
   CHECK(kept.energy < 1e-12);
+  CHECK(farthest(kept.end, bent_bar.build()) > 100);
 }
 
 TEST_CASE("implicit methods step a block by sparse factors as by dense ones", "[hyperelastic]") {
