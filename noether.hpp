@@ -70,6 +70,7 @@
 #include "io/structure.hpp"
 #include "io/trajectory.hpp"
 #include "monitors/dihedrals.hpp"
+#include "monitors/field_momentum.hpp"
 #include "monitors/momentum_map.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/orbital_monitors.hpp"

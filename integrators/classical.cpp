@@ -46,6 +46,8 @@ void check_conservative(std::string_view method, const FieldClaims& field) {
   if (field.variables && !field.energy)
     refuse(fmt::format("system '{}' has rates, and no energy that they keep", field.name));
   if (field.dissipative) refuse("a force of this run is dissipative");
+  if (field.variables && !field.canonical)
+    refuse(fmt::format("system '{}' has a force beside its Lagrangian", field.name));
   if (field.time_dependent)
     refuse(field.variables ? fmt::format("system '{}' depends on time", field.name)
                            : "a force of this run depends on time");

@@ -23,7 +23,11 @@ namespace {
 constexpr std::int64_t once = std::int64_t{1} << 62;
 
 void attach_monitors(Simulation<double>& sim, const Scene& scene) {
-  Watched watched{constraints_of(scene), scene.system ? scene.system->symmetries : std::vector<Symmetry>(), {}};
+  Watched watched{.constraints = constraints_of(scene), .symmetries = {}, .charges = {}, .momenta = {}};
+  if (scene.system) {
+    watched.symmetries = scene.system->symmetries;
+    watched.momenta = scene.system->momenta;
+  }
   watched.charges = {fields_among(forces_of(scene)).terms(), scene.hamiltonian.splitting.c};
   for (const SceneWatch& watch : scene.watches) {
     if (watch.kind == SceneWatch::Kind::monitor) {

@@ -31,10 +31,12 @@
 #include "integrators/minimize.hpp"
 #include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
+#include "integrators/systems/darwin.hpp"
 #include "integrators/systems/double_pendulum.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/systems/kerr.hpp"
+#include "integrators/systems/lorentz_pairs.hpp"
 #include "integrators/systems/lorenz.hpp"
 #include "integrators/systems/nonseparable_oscillator.hpp"
 #include "integrators/systems/pendulum.hpp"
@@ -52,6 +54,7 @@
 #include "io/trajectory.hpp"
 #include "monitors/charges.hpp"
 #include "monitors/dihedrals.hpp"
+#include "monitors/field_momentum.hpp"
 #include "monitors/momentum_map.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/orbital_monitors.hpp"
@@ -163,6 +166,8 @@ void add_systems(Parts& parts) {
   parts.add_system<DoublePendulum>();
   parts.add_system<PolarKepler>();
   parts.add_system<Weber>();
+  parts.add_system<Darwin>();
+  parts.add_system<LorentzPairs>();
 }
 
 }  // namespace
@@ -230,6 +235,7 @@ Parts standard_parts() {
   parts.add_monitor<VelocityAutocorrelation>();
   parts.add_monitor<Variables>();
   parts.add_monitor<MomentumMap>();
+  parts.add_monitor<FieldMomentum>();
   parts.add_monitor<CanonicalMomentum>();
   parts.add_monitor<MagneticMoment>();
   parts.add_monitor<ConstraintResidual>();

@@ -5,6 +5,7 @@
 #include "constraints/constraint_set.hpp"
 #include "constraints/structure_constraints.hpp"
 #include "engine/any_force.hpp"
+#include "engine/momentum_shares.hpp"
 #include "engine/simulation.hpp"
 #include "forces/electromagnetic_field.hpp"
 #include "forces/sum.hpp"
@@ -110,11 +111,13 @@ struct SceneConstraint {
   }
 };
 
-/// What monitors may ask of a run beside its particles: constraints, symmetries of its system, fields of charges.
+/// What monitors may ask of a run beside its particles: constraints, symmetries of its system, fields of charges, and
+/// how the system shares its momentum with a field.
 struct Watched {
   ConstraintSet constraints;
   std::vector<Symmetry> symmetries;
   ChargeMotion charges;
+  MomentumSharing momenta;  ///< empty where it has none
 };
 
 /// A monitor as a scene asked for it.
@@ -153,6 +156,7 @@ struct SceneSystem {
   /// The closed solution, by time; empty where there is none, or the scene starts elsewhere or at another time.
   std::function<std::vector<double>(double)> exact;
   std::vector<Symmetry> symmetries = {};  ///< that it names
+  MomentumSharing momenta = {};           ///< with a field; empty where it has none
 };
 
 namespace detail {
@@ -494,6 +498,7 @@ class Parts {
     }
     made.start = initial_state(system, std::move(values), *reader.context().units);
     if constexpr (requires { system.symmetries(); }) made.symmetries = system.symmetries();
+    if constexpr (requires { system.momentum_sharing(); }) made.momenta = system.momentum_sharing();
     made.field = [system] { return std::make_unique<typename detail::MotionOf<S, double>::type>(system); };
     if constexpr (MovingSystem<S, Quad>) {
       made.wide_field = [system] { return std::make_unique<typename detail::MotionOf<S, Quad>::type>(system); };
@@ -511,6 +516,7 @@ class Parts {
       if constexpr (requires { watching.watch(of.constraints); }) watching.watch(of.constraints);
       if constexpr (requires { watching.watch(of.symmetries); }) watching.watch(of.symmetries);
       if constexpr (requires { watching.watch(of.charges); }) watching.watch(of.charges);
+      if constexpr (requires { watching.watch(of.momenta); }) watching.watch(of.momenta);
       return AnyMonitor<double>(std::move(watching));
     };
     if constexpr (requires { monitor.cost(Index(1), std::int64_t{1}); }) {

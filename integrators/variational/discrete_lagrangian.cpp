@@ -21,7 +21,7 @@ void check_own_action(std::string_view name, bool has_force, const FieldClaims& 
                     "Lagrangian, such as 'galerkin_gauss_2'",
                     name, field.name));
   }
-  if (!field.dissipative || has_force) return;
+  if (field.symplectic || has_force) return;
   throw SchemeMismatch(
       fmt::format("the discrete Lagrangian '{}' has no force, but '{}' has one beside its Lagrangian; give the "
                   "discrete one a force too, or use a method such as 'galerkin_gauss_2'",

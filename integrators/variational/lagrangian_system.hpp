@@ -33,6 +33,7 @@ namespace noether {
 ///     template <class Real> void force(const Real& t, const Vector<Real>& q, const Vector<Real>& v,
 ///                                      Vector<Real>& f) const;   // beside the Lagrangian, such as drag: d'Alembert
 ///     bool forced() const;                      // whether there is one; default: where it has `force`
+///     static constexpr bool workless = true;    // the force does no work, as that of a magnetic field: energy is kept
 ///     static constexpr bool time_dependent = true;               // has to be said where L or the force depends on t
 ///     std::vector<Symmetry> symmetries() const;                  // for the monitor `momentum_map`
 ///     std::vector<double> start() const;                         // q, then p
@@ -118,7 +119,7 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
             .canonical = !forced(),
             .time_dependent = detail::depends_on_time<S>(),
             .energy = true,
-            .dissipative = forced(),
+            .dissipative = forced() && !workless,
             .symplectic = !forced()};
   }
   std::string signature() const override { return detail::signature_of(system_); }
@@ -246,6 +247,7 @@ template <class S, class Real> class LagrangianMotion final : public LagrangianF
   static constexpr bool has_force = requires(const S& system, const Real& t, const Vector<Real>& q, Vector<Real>& f) {
     system.force(t, q, q, f);
   };
+  static constexpr bool workless = requires { requires S::workless; };
   static constexpr bool tells_second_rates = requires(const S& system) { system.second_rates(); };
   bool forced() const {
     if constexpr (has_force && requires { system_.forced(); }) return system_.forced();

@@ -195,7 +195,8 @@ TEST_CASE("the weak form of Weber's force is variational_midpoint", "[weber]") {
   }
 }
 
-TEST_CASE("all three ways with r'' keep energy, momentum and angular momentum of 2, 3 and 20 charges", "[weber]") {
+TEST_CASE("all three ways with r'' keep energy, momentum and angular momentum of 2, 3 and 20 charges",
+          "[weber][slow]") {
   for (const char* name : three_ways) {
     for (const int n : {2, 3, 20}) {
       CAPTURE(name, n);

@@ -396,6 +396,8 @@ SYSTEMS = {
     "double_pendulum": action("type = 'double_pendulum'; start = [0.5, 0.2, 0.0, 0.0]"),
     "polar_kepler": action("type = 'polar_kepler'"),
     "weber": action("type = 'weber'"),
+    "darwin": action("type = 'darwin'"),
+    "lorentz_pairs": action("type = 'lorentz_pairs'"),
 }
 
 
@@ -430,6 +432,7 @@ MONITORS = {
     "magnetic_moment": seen("type = 'magnetic_moment'; steps = {cadence}", Case(CHARGES, fields(SOLENOID))),
     "momentum_map": seen("type = 'momentum_map'; symmetry = 'rotation'; steps = {cadence}",
                          action("type = 'polar_kepler'")),
+    "field_momentum": seen("type = 'field_momentum'; steps = {cadence}", action("type = 'darwin'")),
     "constraint_residual": seen("type = 'constraint_residual'; steps = {cadence}",
                                 constrained(BAR, TIED)),
     "shadow_hamiltonian": seen("type = 'shadow_hamiltonian'; orders = [4, 8]; steps = 1",
