@@ -7,7 +7,6 @@
 
 #include "bench/support.hpp"
 
-#include "engine/simulation.hpp"
 #include "forces/electromagnetic_fields.hpp"
 #include "integrators/all_schemes.hpp"
 #include "integrators/charged_particles.hpp"
@@ -34,34 +33,31 @@ ParticleSystem<double> charges(Index n) {
 
 template <class Field> void add_rows(const bench::Rows& rows, const std::string& name, const Field& field) {
   for (const Index n : {Index{1000}, Index{30'000}, Index{1'000'000}, Index{4'000'000}}) {
-    set_thread_count(1);
+    const std::string row = fmt::format("{}_{}", name, n);
     ForceField<double> forces;
     forces.add(InField(field));
-    const ChargedParticles<ForceField<double>> hamiltonian(forces, {.rotation = Rotation::boris});
-    Simulation sim(charges(n), compose(hamiltonian, schemes::verlet_aba), 0.3);
-    const std::string row = fmt::format("{}_{}", name, n);
+    auto integrator =
+        compose(ChargedParticles<ForceField<double>>(forces, {.rotation = Rotation::boris}), schemes::verlet_aba);
+    ParticleSystem<double> s = charges(n);
+    s.clock() = Clock<double>::fixed(0, 0.3);
+    integrator.bind(s);
+    const auto many = [&](std::int64_t steps) { integrator.advance(s, {.steps = steps}); };
+    const auto one_by_one = [&](std::int64_t steps) {
+      for (std::int64_t k = 0; k < steps; ++k) integrator.advance(s, {.steps = 1});
+    };
     const auto measure = [&](const std::string& figure, std::int64_t steps, const auto& work) {
+      set_thread_count(1);
       std::vector<double> times;
       for (int slice = 0; slice < 7; ++slice)
         times.push_back(1e9 * bench::processor_seconds_of([&] { work(steps); }) / static_cast<double>(n * steps));
       rows.add(row, figure, bench::Measured(times), "ns", n);
     };
-    const auto run = [&](std::int64_t steps) { static_cast<void>(sim.run(steps)); };
-    const std::int64_t many = std::max<std::int64_t>(320, 40'000'000 / n);
-    run(2);
-    measure("particle_step_ns", many, run);
-    if (n <= 1'000'000) {
-      const bench::Measured gain = bench::times_as_quick(2, [&] { return bench::seconds_of([&] { run(many); }); });
-      rows.add(row, "times_as_quick_on_2", gain, "1", n);
-    }
-    set_thread_count(1);
-    ParticleSystem<double> one_by_one = sim.particles();
-    one_by_one.clock() = Clock<double>::fixed(0, 0.3);
-    auto integrator = compose(hamiltonian, schemes::verlet_aba);
-    integrator.bind(one_by_one);
-    measure("particle_step_ns_one_by_one", std::max<std::int64_t>(8, 8'000'000 / n), [&](std::int64_t steps) {
-      for (std::int64_t k = 0; k < steps; ++k) integrator.advance(one_by_one, {.steps = 1});
-    });
+    const std::int64_t steps = std::max<std::int64_t>(64, 40'000'000 / n);
+    many(2);
+    measure("particle_step_ns", steps, many);
+    measure("particle_step_ns_one_by_one", std::max<std::int64_t>(8, 8'000'000 / n), one_by_one);
+    const bench::Measured gain = bench::times_as_quick(2, [&] { return bench::seconds_of([&] { many(steps); }); });
+    rows.add(row, "times_as_quick_on_2", gain, "1", n);
   }
 }
 
