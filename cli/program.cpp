@@ -57,12 +57,13 @@ std::string in_our_words(std::string text) {
 
 /// The launcher of a checkout, `./noether`, has commands of its own, and says that it is there.
 bool under_launcher() { return std::getenv("NOETHER_LAUNCHER") != nullptr; }
-const std::vector<std::string> launcher_commands = {"build", "test", "bench"};
+const std::vector<std::string> launcher_commands = {"build", "test", "bench", "wheel"};
 constexpr const char* launcher_help =
     "In a checkout:\n"
     "  ./noether build             build everything, or for another preset\n"
     "  ./noether test              build and run the tests, all or those of some folders\n"
-    "  ./noether bench             build and run one benchmark, or all\n";
+    "  ./noether bench             build and run one benchmark, or all\n"
+    "  ./noether wheel             make a wheel of the Python package\n";
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;

@@ -1,7 +1,12 @@
 #include "io/digest.hpp"
 
 #include <fmt/format.h>
+#if NOETHER_STATIC
+#define OPENSSL_SUPPRESS_DEPRECATED
+#include <openssl/sha.h>
+#else
 #include <openssl/evp.h>
+#endif
 
 #include <algorithm>
 #include <array>
@@ -16,10 +21,34 @@ namespace noether::io {
 
 static_assert(std::endian::native == std::endian::little, "files and digests are little-endian as memory is");
 
+#if NOETHER_STATIC
+/// By functions that name the algorithm: those below would link all that the archive has, 4 MB.
+struct RunningDigest::Context {
+  SHA256_CTX held{};
+  bool begun = false;
+
+  bool made() const { return true; }
+  bool begin() { return SHA256_Init(&held) == 1; }
+  bool add(const void* data, std::size_t bytes) { return SHA256_Update(&held, data, bytes) == 1; }
+  bool end(RowDigest& row) { return SHA256_Final(reinterpret_cast<unsigned char*>(row.data()), &held) == 1; }
+};
+#else
 struct RunningDigest::Context {
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> held{EVP_MD_CTX_new(), EVP_MD_CTX_free};
   bool begun = false;
+
+  bool made() const { return held != nullptr; }
+  bool begin() { return EVP_DigestInit_ex(held.get(), EVP_sha256(), nullptr) == 1; }
+  bool add(const void* data, std::size_t bytes) { return EVP_DigestUpdate(held.get(), data, bytes) == 1; }
+  bool end(RowDigest& row) {
+    unsigned int size = 0;
+    std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
+    if (EVP_DigestFinal_ex(held.get(), hash.data(), &size) != 1 || size != sizeof row) return false;
+    std::memcpy(row.data(), hash.data(), sizeof row);
+    return true;
+  }
 };
+#endif
 void RunningDigest::Free::operator()(Context* context) const { delete context; }
 
 namespace {
@@ -30,22 +59,19 @@ void expect_done(bool done) {
 
 }  // namespace
 
-RunningDigest::RunningDigest() : context_(new Context) { expect_done(context_->held != nullptr); }
+RunningDigest::RunningDigest() : context_(new Context) { expect_done(context_->made()); }
 
 void RunningDigest::add(const void* data, std::size_t bytes) {
-  if (!context_->begun) expect_done(EVP_DigestInit_ex(context_->held.get(), EVP_sha256(), nullptr) == 1);
+  if (!context_->begun) expect_done(context_->begin());
   context_->begun = true;
-  expect_done(EVP_DigestUpdate(context_->held.get(), data, bytes) == 1);
+  expect_done(context_->add(data, bytes));
 }
 
 RowDigest RunningDigest::row() {
   if (!context_->begun) add(nullptr, 0);
-  std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
-  unsigned int size = 0;
-  expect_done(EVP_DigestFinal_ex(context_->held.get(), hash.data(), &size) == 1 && size == sizeof(RowDigest));
-  context_->begun = false;
   RowDigest row{};
-  std::memcpy(row.data(), hash.data(), sizeof row);
+  expect_done(context_->end(row));
+  context_->begun = false;
   return row;
 }
 

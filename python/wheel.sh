@@ -39,8 +39,11 @@ wheel_hdf5() {
     cd "$folder"
     apt-get "${options[@]}" update && apt-get "${options[@]}" source --download-only hdf5 && dpkg-source -x hdf5_*.dsc source
     cd build  # configured from elsewhere it does not find its own probes
-    cmake -G Ninja ../source -DCMAKE_BUILD_TYPE=Release -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DBUILD_SHARED_LIBS=OFF \
-      -DBUILD_TESTING=OFF -DHDF5_BUILD_TOOLS=OFF -DHDF5_BUILD_EXAMPLES=OFF -DHDF5_BUILD_UTILS=OFF -DHDF5_BUILD_HL_LIB=OFF -DHDF5_BUILD_CPP_LIB=OFF \
+    # Small: it writes and reads, and most of it is never called.
+    cmake -G Ninja ../source "-DCMAKE_C_FLAGS_RELEASE=-Os -DNDEBUG -ffunction-sections -fdata-sections -w" \
+      -DCMAKE_BUILD_TYPE=Release -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DBUILD_SHARED_LIBS=OFF \
+      -DBUILD_TESTING=OFF -DHDF5_BUILD_TOOLS=OFF -DHDF5_BUILD_EXAMPLES=OFF \
+      -DHDF5_BUILD_UTILS=OFF -DHDF5_BUILD_HL_LIB=OFF -DHDF5_BUILD_CPP_LIB=OFF \
       -DHDF5_ENABLE_Z_LIB_SUPPORT=OFF -DHDF5_ENABLE_SZIP_SUPPORT=OFF -DCMAKE_INSTALL_PREFIX="$folder/prefix" \
       $(! command -v ccache >/dev/null || echo -DCMAKE_C_COMPILER_LAUNCHER=ccache)
     ninja install

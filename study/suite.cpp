@@ -8,6 +8,7 @@
 #include "scene/minimize.hpp"
 #include "study/multistep_roots.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <Eigen/LU>
 
@@ -243,12 +244,19 @@ std::string expected_by_theory(const Scene& scene, const Candidate& who, double 
 
 std::filesystem::path suite_folder() {
   std::error_code ignored;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  for (std::filesystem::path at = program.parent_path(); !at.empty(); at = at.parent_path()) {
-    for (const char* below : {"study/suite", "share/noether/suite"}) {
-      if (std::filesystem::is_directory(at / below, ignored)) return at / below;
+  // First the file that this function stands in: in Python that is the module. Of a program it may lack the folder.
+  Dl_info here{};
+  const bool known = dladdr(reinterpret_cast<const void*>(&suite_folder), &here) != 0 && here.dli_fname != nullptr;
+  for (const std::filesystem::path& file : {std::filesystem::path(known ? here.dli_fname : ""),
+                                            std::filesystem::read_symlink("/proc/self/exe", ignored)}) {
+    if (!file.is_absolute()) continue;
+    const std::filesystem::path whole = std::filesystem::weakly_canonical(file, ignored);
+    for (std::filesystem::path at = whole.parent_path(); !at.empty(); at = at.parent_path()) {
+      for (const char* below : {"study/suite", "share/noether/suite"}) {
+        if (std::filesystem::is_directory(at / below, ignored)) return at / below;
+      }
+      if (at == at.root_path()) break;
     }
-    if (at == at.root_path()) break;
   }
   throw Error("the scenes of the suite are missing; they are in study/suite, or in share/noether/suite once installed");
 }

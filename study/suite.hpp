@@ -44,7 +44,7 @@ struct Suite {
 };
 
 /// The folder of scenes that noether brings: `study/suite` of the source tree that the program was built in, or
-/// `share/noether/suite` beside an installed one.
+/// `share/noether/suite` beside an installed one, or in an installed Python package.
 /// @throws Error  if neither is there
 std::filesystem::path suite_folder();
 

@@ -2,12 +2,18 @@
 ///
 /// What users see is written in Python (python/noether); nothing here names a part.
 
+#include "cli/program.hpp"
 #include "numbers/error.hpp"
 #include "python/module/scenes.hpp"
+#include "study/suite.hpp"
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <exception>
+#include <string>
+#include <vector>
 
 namespace nb = nanobind;
 
@@ -32,6 +38,14 @@ void bind_errors(nb::module_& m) {
   });
 }
 
+/// The program of these words, the first its name. A wheel has no other: a second copy of everything would double it.
+int run_program(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  return program(static_cast<int>(words.size()), arguments.data());
+}
+
 }  // namespace
 
 }  // namespace noether::python
@@ -39,6 +53,8 @@ void bind_errors(nb::module_& m) {
 NB_MODULE(_core, m) {
   using namespace noether::python;
   bind_errors(m);
+  m.def("suite_folder", [] { return noether::suite_folder().string(); });
+  m.def("program", &run_program, nb::arg("words"), nb::call_guard<nb::gil_scoped_release>());
   bind_parts(m);
   bind_elements(m);
   bind_scenes(m);

@@ -9,19 +9,29 @@ from . import _core
 
 
 def program():
-    """The path of the program `noether` that belongs to this package."""
-    here = os.path.dirname(os.path.abspath(__file__))
-    for path in (os.environ.get("NOETHER_PROGRAM", ""), os.path.join(here, "bin", "noether"),
-                 os.path.join(here, "..", "..", "cli", "noether")):
-        if path and os.access(path, os.X_OK):
-            return os.path.realpath(path)
-    raise FileNotFoundError("the program noether is not in this package; it was built without it")
+    """The words that start the program `noether`: that of this package, or the one that NOETHER_PROGRAM names.
+
+    The program is in the package's module, which a Python of its own becomes. It takes 0.1 s to start.
+    @raise FileNotFoundError if NOETHER_PROGRAM names no program
+    """
+    given = os.environ.get("NOETHER_PROGRAM")
+    if given:
+        if os.access(given, os.X_OK):
+            return [given]
+        raise FileNotFoundError(f"NOETHER_PROGRAM is {given!r}, which is no program")
+    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    start = f"import sys; sys.path.append({root!r}); from noether.files import main; main()"
+    return [sys.executable, "-I", "-c", start]  # -I: no folder of the user's is searched before this package
 
 
 def main():
-    """The command `noether` of an installed package."""
-    path = program()
-    os.execv(path, ["noether", *sys.argv[1:]])
+    """The command `noether` of an installed package: the program, with the arguments of this process."""
+    import signal
+
+    # As programs start. Python holds an interrupt back until its own code runs on, and makes errors of closed pipes.
+    for number in (signal.SIGINT, signal.SIGPIPE):
+        signal.signal(number, signal.SIG_DFL)
+    sys.exit(_core.program(["noether", *sys.argv[1:]]))
 
 
 _ERRORS = {2: _core.Error, 3: _core.FileError}
@@ -29,7 +39,7 @@ _ERRORS = {2: _core.Error, 3: _core.FileError}
 
 def _ask(*arguments):
     """What the program prints as JSON. @raise Error or FileError with its message"""
-    done = subprocess.run([program(), *[os.fspath(one) for one in arguments], "--json"], capture_output=True, text=True)
+    done = subprocess.run([*program(), *[os.fspath(one) for one in arguments], "--json"], capture_output=True, text=True)
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     told = json.loads(lines[-1]) if lines else {}
     if lines and told["schema"] != "noether.error/1":

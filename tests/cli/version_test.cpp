@@ -74,7 +74,8 @@ TEST_CASE("help is that of the program, or of a command", "[cli][help]") {
   };
   for (const char* line : {"help", "--help"}) {
     const std::string text = launched(line).out;
-    for (const char* name : {"build", "test", "bench"}) CHECK(has(text, std::string("\n  ./noether ") + name + " "));
+    for (const char* name : {"build", "test", "bench", "wheel"})
+      CHECK(has(text, std::string("\n  ./noether ") + name + " "));
     CHECK(text.starts_with(help));
   }
   CHECK(launched("biuld").err == "unknown command 'biuld'; did you mean 'build'?\n");

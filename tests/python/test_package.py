@@ -1,8 +1,10 @@
 """What `pip install` brings: the module, the program, the scenes of the suite and of the examples."""
 
 import os
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -14,27 +16,65 @@ def run(*arguments, **settings):
     return subprocess.run([sys.executable, "-B", *arguments], capture_output=True, text=True, timeout=60, **settings)
 
 
-def test_the_program_is_of_the_same_version():
-    told = subprocess.run([files.program(), "--version"], capture_output=True, text=True, timeout=60)
+@pytest.fixture
+def program(monkeypatch):
+    """The program as a wheel has it, whatever program the tests are run with."""
+    monkeypatch.delenv("NOETHER_PROGRAM", raising=False)
+    return lambda *words, **settings: subprocess.run([*files.program(), *words], capture_output=True, text=True, timeout=120,
+                                                     **settings)
+
+
+def test_the_program_is_of_the_same_version(program):
+    told = program("--version")
     assert told.returncode == 0
     assert told.stdout.split()[:2] == ["noether", nt.__version__]
 
 
-def test_the_command_becomes_the_program_and_keeps_its_exit_code():
-    command = ["-c", "import sys; from noether.files import main; sys.argv[0] = 'noether'; main()"]
-    assert run(*command, "--version").stdout == run(*command, "--version").stdout != ""
-    wrong = run(*command, "rnu")
+def test_the_command_is_the_program_with_its_exit_codes_and_signals(program, tmp_path):
+    wrong = program("rnu")
     assert wrong.returncode == 2
-    assert "rnu" in wrong.stderr
+    assert "unknown command 'rnu'; did you mean 'run'?" in wrong.stderr
+    assert program("run", "nowhere.toml", cwd=tmp_path).returncode == 3
+
+
+def test_a_reader_that_has_seen_enough_ends_the_command_silently(program):
+    pipe = '"$@" describe --all | head -n 1; echo "${PIPESTATUS[0]}"'
+    told = subprocess.run(["bash", "-c", pipe, "-", *files.program()], capture_output=True, text=True, timeout=60)
+    assert told.stderr == ""
+    assert int(told.stdout.splitlines()[-1]) in (0, 128 + signal.SIGPIPE)  # 0: the pipe held all of it
+
+
+def test_an_interrupt_ends_a_command_that_has_no_way_of_its_own_to_end(program, tmp_path):
+    command = [*files.program(), "explain", "/dev/stdin"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path) as running:
+        time.sleep(0.5)  # it waits for a scene
+        running.send_signal(signal.SIGINT)
+        assert running.wait(timeout=10) != 0
+        assert b"Traceback" not in running.stderr.read()
+
+
+def test_the_program_and_the_function_end_in_the_same_bits(program, tmp_path):
+    told = program("run", nt.example("figure_eight"), "--until", "1", "--out", str(tmp_path / "out"))
+    assert told.returncode == 0, told.stderr
+    report = nt.run(nt.example("figure_eight"), until="1")
+    assert told.stdout.splitlines()[-1] == report.digest
+
+
+def test_a_program_that_is_not_there_is_refused(monkeypatch):
+    monkeypatch.setenv("NOETHER_PROGRAM", "/nowhere/noether")
+    with pytest.raises(FileNotFoundError, match="NOETHER_PROGRAM is '/nowhere/noether'"):
+        files.program()
+
+
+def test_the_scenes_of_the_suite_are_found():
+    assert os.path.exists(os.path.join(nt._core.suite_folder(), "kepler.toml"))
 
 
 def test_every_example_has_what_its_scene_reads():
     names = nt.examples()
     assert {"figure_eight", "outer_solar_system", "butane", "rigid_water"} <= set(names)
     for name in names:
-        told = subprocess.run([files.program(), "explain", nt.example(name), "--json"], capture_output=True, text=True,
-                              timeout=120)
-        assert told.returncode == 0, f"{name}: {told.stderr}"
+        assert nt.Scene(nt.example(name)) is not None, name
 
 
 def test_an_example_that_is_not_there_is_refused_by_name():

@@ -2,9 +2,10 @@
 # Makes a wheel by `./noether wheel` and tries it where nothing else is: on a bare system made by debootstrap that gets a
 # Python and no compiler; without root, debootstrap or a network for it, in a virtual environment of this system. The line
 # that begins with "tried:" says which of the two it was; docs/nightly.md repeats it.
+#     run.sh [WHEEL]      of a wheel that is there, nothing is made
 set -eu
+[ $# = 0 ] || wheel=$(realpath "$1")
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-source=$PWD
 
 skip() {
   echo "skipped: $1"
@@ -14,7 +15,8 @@ fail() {
   echo "failed: $*"
   exit 1
 }
-command -v apt-get >/dev/null || skip "the wheel's HDF5 is built from a source package of Debian's, and there is no apt-get"
+[ $# = 1 ] || command -v apt-get >/dev/null ||
+  skip "the wheel's HDF5 is built from a source package of Debian's, and there is no apt-get"
 scratch=$(mktemp -d)
 bare=$scratch/bare
 cleanup() {
@@ -26,13 +28,15 @@ python3 -m venv "$scratch/probe" >/dev/null 2>&1 || skip "python3 makes no virtu
 "$scratch/probe/bin/pip" download --quiet --no-deps --retries 1 --timeout 15 -d "$scratch/probe" nanobind >/dev/null 2>&1 ||
   skip "no index of Python packages is reachable"
 
-wheel=$(./noether wheel | tail -n 1)
-[ -f "$wheel" ] || fail "./noether wheel printed no file: '$wheel'"
+if [ $# = 0 ]; then
+  wheel=$(./noether wheel | tail -n 1)
+  [ -f "$wheel" ] || fail "./noether wheel printed no file: '$wheel'"
+fi
 
 # ---- what is in it ------------------------------------------------------------------------------------------------
 
 python3 -m zipfile -l "$wheel" | awk 'NR > 1 { print $1 }' >"$scratch/list"
-for path in noether/__init__.py noether/bin/noether noether/share/noether/suite/kepler.toml noether/licences/hdf5 \
+for path in noether/__init__.py noether/share/noether/suite/kepler.toml noether/licences/hdf5 \
   noether/examples/figure_eight/scene.toml noether/examples/outer_solar_system/outer_planets.csv; do
   grep -qxF "$path" "$scratch/list" || fail "the wheel has no $path"
 done
