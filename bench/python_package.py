@@ -62,7 +62,7 @@ def steps(nt):
         begin = time.perf_counter()
         sim.run(STEPS)
         ours.append((time.perf_counter() - begin) / STEPS * 1e9)
-        told = subprocess.run([nt.files.program(), "run", file, "--out", f"program{turn}", "--json"], capture_output=True,
+        told = subprocess.run([*nt.files.program(), "run", file, "--out", f"program{turn}", "--json"], capture_output=True,
                               text=True, check=True)
         theirs.append(json.loads(told.stdout)["wall_s"] / STEPS * 1e9)
     mine, program = statistics.median(ours), statistics.median(theirs)

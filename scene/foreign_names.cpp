@@ -153,6 +153,8 @@ constexpr std::array names_of_others = {
     ForeignName{" rdf g_r gofr pair_correlation ", NamePlace::monitor, "radial_distribution"},
     ForeignName{" temp ", NamePlace::monitor, "temperature"},
     ForeignName{" dihedral torsion torsions dihedral_angles ", NamePlace::monitor, "dihedrals"},
+    ForeignName{" dipole dipoles dipole_moments polarization ", NamePlace::monitor, "dipole_moment"},
+    ForeignName{" dielectric permittivity epsilon_r relative_permittivity ", NamePlace::monitor, "dielectric_constant"},
     ForeignName{" virial stress press ", NamePlace::monitor, "pressure"},
     ForeignName{" com center_of_mass_motion barycenter ", NamePlace::monitor, "center_of_mass"},
     ForeignName{" orbits orbital_elements osculating_elements orbit kepler_elements ", NamePlace::monitor, "elements"},

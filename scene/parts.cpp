@@ -55,6 +55,7 @@
 #include "monitors/charges.hpp"
 #include "monitors/dihedrals.hpp"
 #include "monitors/field_momentum.hpp"
+#include "monitors/dipole.hpp"
 #include "monitors/momentum_map.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/orbital_monitors.hpp"
@@ -231,6 +232,8 @@ Parts standard_parts() {
   parts.add_monitor<Pressure>();
   parts.add_monitor<RadialDistribution>();
   parts.add_monitor<Dihedrals>();
+  parts.add_monitor<DipoleMoment>();
+  parts.add_monitor<DielectricConstant>();
   parts.add_monitor<MeanSquareDisplacement>();
   parts.add_monitor<VelocityAutocorrelation>();
   parts.add_monitor<Variables>();

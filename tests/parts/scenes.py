@@ -423,6 +423,8 @@ MONITORS = {
     "dihedrals": seen("type = 'dihedrals'; bins = 12; quadruples = [['atom_1', 'atom_2', 'atom_3', 'atom_4']]; "
                       "steps = {cadence}",
                       Case(CHAIN, forces("type = 'bonded'"), step=0.01, files={"chain.data": CHAIN_FILE})),
+    "dipole_moment": seen("type = 'dipole_moment'; steps = {cadence}", salt(LENNARD_JONES)),
+    "dielectric_constant": seen("type = 'dielectric_constant'; temperature = '300 K'; steps = {cadence}", water()),
     "mean_square_displacement": seen("type = 'mean_square_displacement'; length = 4; origins = 2; steps = {cadence}",
                                      salt(LENNARD_JONES)),
     "velocity_autocorrelation": seen("type = 'velocity_autocorrelation'; length = 4; origins = 2; steps = {cadence}",

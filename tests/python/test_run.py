@@ -25,7 +25,7 @@ OWN_PARTS = [one for one in nt.examples() if "\nprogram = " in open(nt.example(o
 
 
 def digest_by_the_program(scene, *options):
-    done = subprocess.run([nt.files.program(), "run", scene, *options, "--out", "by_the_program", "--json"],
+    done = subprocess.run([*nt.files.program(), "run", scene, *options, "--out", "by_the_program", "--json"],
                           capture_output=True, text=True)
     return json.loads(done.stdout)["digest"]
 
@@ -50,7 +50,7 @@ def test_a_dict_is_a_scene_to_the_bit():
 
 
 def test_changes_and_the_end_are_those_of_the_command_line():
-    told = subprocess.run([nt.files.program(), "run", nt.example("figure_eight"), "--set", "integrator.method=gauss_8",
+    told = subprocess.run([*nt.files.program(), "run", nt.example("figure_eight"), "--set", "integrator.method=gauss_8",
                            "--set", "integrator.steps=100", "--out", "program", "--json"], capture_output=True, text=True)
     ours = nt.run("figure_eight", set={"integrator.method": "gauss_8", "integrator.steps": 100}, out="python")
     assert json.loads(told.stdout)["digest"] == ours.digest
