@@ -94,6 +94,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
             .dissipative = forces.dissipative,
             .any_origin = forces.keeps_momentum && !forces.velocity_dependent && !forces.time_dependent &&
                           !work_.box().is_periodic(),
+            .symplectic = !forces.velocity_dependent,
+            .no_action = forces.velocity_dependent ? "a force depends on velocities, so the motion has no action" : "",
             .keeps_momentum = forces.keeps_momentum,
             .keeps_angular_momentum = forces.keeps_angular_momentum && !work_.box().is_periodic()};
   }

@@ -22,9 +22,13 @@
 namespace noether {
 namespace {
 
-const double pi = std::acos(-1.0);
-const Vec3<double> ring_x(0, -1, 0), ring_v(0.1, 0.01, 0), banana_x(1.05, 0, 0), banana_v(0, 4.816e-4, -2.059e-3);
-const PenningTrap trap{.B0 = 25, .gradient = 4.9 * 4.9};
+using test::banana_v;
+using test::banana_x;
+using test::ring_v;
+using test::ring_x;
+using test::trap;
+
+const double half_turn = std::acos(-1.0);
 const PlaneWave wave{.E0 = {0.6, 0, 0}, .direction = {0, 0, 1}, .omega = 2, .c = 1};
 
 template <class Real, class Field> ForceField<Real> forces_of(const Field& field) {
@@ -240,9 +244,9 @@ TEST_CASE("energy-exact methods keep the energy of charges in a trap and in a to
     CAPTURE(name);
     CHECK(worst(trap, name, {10, 0, 0}, {100, 0, 100}, 1.0 / 160, 200) < 5e-14);
     // v is the difference of p and A, 20 to 40 times as large: 1e-16 of these is a rounding error of the energy.
-    CHECK(worst(Tokamak{}, name, banana_x, banana_v, pi / 10, 200) < 1e-11);
+    CHECK(worst(Tokamak{}, name, banana_x, banana_v, half_turn / 10, 200) < 1e-11);
   }
-  Simulation by_gauss(test::one_charge(banana_x, banana_v), by_momenta<double>(Tokamak{}, "gauss_2"), pi / 10);
+  Simulation by_gauss(test::one_charge(banana_x, banana_v), by_momenta<double>(Tokamak{}, "gauss_2"), half_turn / 10);
   auto& energy = by_gauss.every(1, Energy{});
   REQUIRE(by_gauss.run(500).ok());
   CHECK(energy.worst() > 1e-9);
@@ -273,7 +277,7 @@ TEST_CASE("what is quadratic in x and p is kept by symplectic methods: the momen
 TEST_CASE("energies by momenta in a ring field, first and last tenth of 20 000 steps", "[integrators][charges][slow]") {
   const auto worst = [&](const AnyIntegrator<double>& by) {
     std::array<double, 2> tenths{};
-    Simulation sim(test::one_charge(ring_x, ring_v), by, pi / 10);
+    Simulation sim(test::one_charge(ring_x, ring_v), by, half_turn / 10);
     auto& energy = sim.every(1, Energy{});
     for (int k = 1; k <= 20'000; ++k) {
       REQUIRE(sim.run(1).ok());

@@ -21,14 +21,16 @@
 namespace noether {
 namespace {
 
+using test::banana_v;
+using test::banana_x;
 using test::in_field;
 using test::one_charge;
+using test::ring_v;
+using test::ring_x;
+using test::trap;
 
 const double pi = std::acos(-1.0);
 const Vec3<double> trap_x(10, 0, 0), trap_v(100, 0, 100);
-const PenningTrap trap{.B0 = 25, .gradient = 4.9 * 4.9};
-const Vec3<double> ring_x(0, -1, 0), ring_v(0.1, 0.01, 0);
-const Vec3<double> banana_x(1.05, 0, 0), banana_v(0, 4.816e-4, -2.059e-3);
 
 ParticleSystem<double> after(ParticleSystem<double> start, AnyIntegrator<double> by, double h, std::int64_t steps) {
   Simulation sim(std::move(start), std::move(by), h);

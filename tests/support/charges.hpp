@@ -25,6 +25,12 @@ struct RingField {
   }
 };
 
+/// Starts in this field, and of a banana in a tokamak of B0 = 1, R0 = 1.
+inline const Vec3<double> ring_x(0, -1, 0), ring_v(0.1, 0.01, 0), banana_x(1.05, 0, 0),
+    banana_v(0, 4.816e-4, -2.059e-3);
+/// The trap of Winkel and others: wE = 4.9, wB = 25.
+inline const PenningTrap trap{.B0 = 25, .gradient = 4.9 * 4.9};
+
 template <class Real = double>
 ParticleSystem<Real> one_charge(const Vec3<double>& x, const Vec3<double>& v, double charge = 1, double mass = 1) {
   ParticleSystem<double> s(unit_system("reduced"));
