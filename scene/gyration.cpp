@@ -2,6 +2,7 @@
 
 #include "engine/proper_velocity.hpp"
 #include "forces/electromagnetic_field.hpp"
+#include "numbers/suggest.hpp"
 #include "scene/scene.hpp"
 
 #include <algorithm>
@@ -40,6 +41,11 @@ std::optional<double> first_gyration(const Scene& scene, double time) {
   const auto first = std::find_if(rates.begin(), rates.end(), [](double rate) { return rate > 0; });
   if (first == rates.end()) return {};
   return 2 * std::numbers::pi / *first;
+}
+
+std::string misspelt_gyration(const std::string& step) {
+  const std::string word = "gyration", last = step.substr(step.find_last_of(" 0123456789.") + 1);
+  return last == word || suggest(last, {word}).empty() ? "" : last;
 }
 
 }  // namespace noether

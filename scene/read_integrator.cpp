@@ -4,9 +4,9 @@
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
 #include "io/text_table.hpp"
-#include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
 #include "scene/foreign_names.hpp"
+#include "scene/gyration.hpp"
 #include "scene/read_decorators.hpp"
 #include "scene/read_options.hpp"
 
@@ -243,14 +243,9 @@ std::string example_step(const UnitSystem& units) {
 std::optional<double> gyration_step(const TableReader& reader, const SceneValue& step) {
   constexpr std::string_view word = "gyration";
   const std::string* text = step.get<std::string>();
-  if (text == nullptr) return {};
-  if (!text->ends_with(word)) {
-    const std::string last = text->substr(text->find_last_of(" 0123456789.") + 1);
-    if (suggest(last, {std::string(word)}).empty()) return {};
-    reader.fail(
-        &step, "step",
-        fmt::format("unknown unit '{}' in step = {}{}", last, to_text(step), did_you_mean(last, {std::string(word)})));
-  }
+  const std::string wrong = text == nullptr ? "" : misspelt_gyration(*text);
+  if (!wrong.empty()) reader.fail(&step, "step", "unknown unit '" + wrong + "' in step; did you mean 'gyration'?");
+  if (text == nullptr || !text->ends_with(word)) return {};
   const std::optional<double>& period = reader.context().gyration;
   if (!period) {
     reader.fail(&step, "step",

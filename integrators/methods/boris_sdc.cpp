@@ -161,7 +161,7 @@ std::span<const MethodInfo> methods::boris_sdc_list() {
       {.name = "boris_sdc",
        .summary =
            "Boris's step between Lobatto nodes, corrected by sweeps towards collocation: order by nodes and sweeps",
-       .use = "charges in fields to high accuracy over short times, without linear systems (order 6 in magnetic fields)",
+       .use = "charges in fields to high accuracy over short times without linear systems (order 6 in magnetic fields)",
        .source = "WinkelSpeckRuprecht2015",
        .family = "collocation",
        .options = {&own_options<BorisSdcOptions>},
