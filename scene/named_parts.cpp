@@ -65,7 +65,7 @@ AnyMonitor<double> make_monitor(const std::string& name, const SceneValue& value
       kind_of_part(named.context, named.table, "monitor", "monitor", parts_of(from).monitors(), {}).first;
   TableReader reader(named.context, named.table, fmt::format("monitor '{}'", name), "monitor");
   reader.find("type");
-  return kind->read(reader).make({constraints, {}, {}});
+  return kind->read(reader).make({constraints, {}, {}, {}});
 }
 
 SceneHamiltonian make_hamiltonian(const std::string& name, const SceneValue& values, std::vector<SceneForce> forces,
