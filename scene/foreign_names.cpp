@@ -107,7 +107,8 @@ constexpr std::array names_of_others = {
     ForeignName{" lj lj_cut lj126 lj_12_6 12_6 twelve_six vdw vdwaals lennardjones van_der_waals ", NamePlace::force,
                 "lennard_jones"},
     ForeignName{" rf reactionfield ", NamePlace::force, "reaction_field"},
-    ForeignName{" coulomb coul coul_cut lj_cut_coul_cut electrostatic electrostatics charges charge dsf coul_dsf wolf "
+    ForeignName{" coulomb coulombs_law coulombic ", NamePlace::force, "coulomb"},
+    ForeignName{" coul coul_cut lj_cut_coul_cut electrostatic electrostatics charges charge dsf coul_dsf wolf "
                 "cutoff_coulomb ",
                 NamePlace::force, "reaction_field", "charges beyond its cutoff are a dielectric", true},
     ForeignName{" pme spme ewald pppm p3m coul_long lj_cut_coul_long kspace particle_mesh_ewald ", NamePlace::force,

@@ -6,6 +6,7 @@
 #include "constraints/surfaces.hpp"
 #include "forces/anharmonic_chain.hpp"
 #include "forces/bonded.hpp"
+#include "forces/coulomb.hpp"
 #include "forces/electromagnetic_fields.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
@@ -197,6 +198,7 @@ Parts standard_parts() {
   parts.add_force<MorseForce>();
   parts.add_force<BuckinghamForce>();
   parts.add_force<ReactionFieldForce>();
+  parts.add_force<Coulomb>();
   parts.add_force<HarmonicBond>();
   parts.add_force<Tether>();
   parts.add_force<Bonded>();
