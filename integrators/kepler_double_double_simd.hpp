@@ -3,6 +3,7 @@
 
 #include "integrators/double_double_simd.hpp"
 #include "integrators/kepler_tangent_simd.hpp"
+#include "integrators/wide_constant_simd.hpp"
 
 namespace noether::NOETHER_SIMD_LEVEL {
 namespace {
@@ -14,7 +15,7 @@ template <int n> struct WideSeries {
   double high[all] = {}, low[wide] = {};
 
   constexpr WideSeries() {
-    __extension__ __float128 term = 1;
+    WideConstant term = 1;
     for (int j = 2; j <= n; ++j) term /= j;
     for (int k = 0; k < all; ++k) {
       high[k] = static_cast<double>(term);

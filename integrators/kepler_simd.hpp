@@ -2,6 +2,7 @@
 /// Kepler arcs of eight bodies side by side; for `*_simd.cpp` alone. docs/theory/kepler.md has the formulae.
 
 #include "integrators/planet_row.hpp"
+#include "integrators/wide_constant_simd.hpp"
 #include "numbers/eight_simd.hpp"
 
 namespace noether::NOETHER_SIMD_LEVEL {
@@ -35,7 +36,7 @@ constexpr double one_over_factorial(int n) {
 }
 /// What rounding takes from 1/n!. Constants always rounded the same way would make energies drift.
 constexpr double one_over_factorial_low(int n) {
-  __extension__ __float128 f = 1;
+  WideConstant f = 1;
   for (int k = 2; k <= n; ++k) f *= k;
   return NOETHER_SERIES_LOW * double(1 / f - 1 / double(f));
 }

@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -45,12 +44,13 @@ def test_a_reader_that_has_seen_enough_ends_the_command_silently(program):
 
 
 def test_an_interrupt_ends_a_command_that_has_no_way_of_its_own_to_end(program, tmp_path):
-    command = [*files.program(), "explain", "/dev/stdin"]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path) as running:
-        time.sleep(0.5)  # it waits for a scene
-        running.send_signal(signal.SIGINT)
-        assert running.wait(timeout=10) != 0
-        assert b"Traceback" not in running.stderr.read()
+    scene = tmp_path / "scene.toml"
+    os.mkfifo(scene)
+    with subprocess.Popen([*files.program(), "explain", scene], stderr=subprocess.PIPE, cwd=tmp_path) as running:
+        with open(scene, "w"):  # opened once the program reads, and waits for more
+            running.send_signal(signal.SIGINT)
+            assert running.wait(timeout=60) == -signal.SIGINT
+        assert running.stderr.read() == b""
 
 
 def test_the_program_and_the_function_end_in_the_same_bits(program, tmp_path):
@@ -73,8 +73,8 @@ def test_the_scenes_of_the_suite_are_found():
 def test_every_example_has_what_its_scene_reads():
     names = nt.examples()
     assert {"figure_eight", "outer_solar_system", "butane", "rigid_water"} <= set(names)
-    for name in names:
-        assert nt.Scene(nt.example(name)) is not None, name
+    for name in set(names) - {"bead_on_wire", "beads_on_sphere", "oblate_saturn"}:  # these need programs of their own
+        nt.Scene(nt.example(name))  # or raises what is wrong with it
 
 
 def test_an_example_that_is_not_there_is_refused_by_name():
