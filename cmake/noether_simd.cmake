@@ -8,6 +8,10 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   list(APPEND NOETHER_SIMD_LEVELS avx2 avx512)
 endif()
 set(NOETHER_SIMD_FLAGS_base)
+if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  # As x86-64 has it at this level: no fused multiply-add, which NEON's lanes would use, and so the same bits.
+  set(NOETHER_SIMD_FLAGS_base -DHWY_COMPILE_ONLY_SCALAR)
+endif()
 # Highway takes a processor for x86-64-v3 or v4 only if it also has these two.
 set(NOETHER_SIMD_FLAGS_avx2 -march=x86-64-v3 -maes -mpclmul)
 set(NOETHER_SIMD_FLAGS_avx512 -march=x86-64-v4 -maes -mpclmul)
