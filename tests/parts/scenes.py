@@ -246,7 +246,8 @@ FORCES = {
     "morse": salt("type = 'morse'; depth = 1; a = 2; length = 1.1; cutoff = 2.5; cutoff_style = 'switch_c4'"),
     "buckingham": salt("type = 'buckingham'; A = 1000; rho = 0.3; C = 1; cutoff = 2.5; cutoff_style = 'switch_c2'"),
     "reaction_field": salt(LENNARD_JONES, "type = 'reaction_field'; cutoff = 2.5"),
-    "coulomb": Case(CHARGES, forces("type = 'coulomb'", SPRING)),
+    # Of one sign: two that attract each other would nearly meet.
+    "coulomb": Case(CHARGES.replace("charge = -1.0", "charge = 1.0"), forces("type = 'coulomb'", SPRING)),
     "harmonic_bond": Case(PAIR, forces("type = 'harmonic_bond'; chain = ['a', 'b']; k = 10; length = 0.7")),
     "tether": Case(PAIR, forces("type = 'tether'; bodies = 'all'; k = 10; length = 0.2; point = [0.0, 0.0, 0.3]")),
     "bonded": Case(CHAIN, forces("type = 'bonded'"), step=0.01, files={"chain.data": CHAIN_FILE}),

@@ -12,7 +12,7 @@
 namespace noether::test {
 namespace {
 
-double order_of(const Comparison& c, const std::string& label) {
+double measured_order(const Comparison& c, const std::string& label) {
   const auto found =
       std::find_if(c.orders.begin(), c.orders.end(), [&](const OrderFit& fit) { return fit.label == label; });
   REQUIRE(found != c.orders.end());
@@ -56,7 +56,7 @@ steps = 200
   for (const auto& [label, order] : {std::pair("verlet_aba", 2), std::pair("gauss_2", 4), std::pair("tao_2", 2),
                                      std::pair("semiexplicit_2", 2), std::pair("avf", 2)}) {
     INFO(label);
-    CHECK(std::abs(order_of(c, label) - order) < 0.3);
+    CHECK(std::abs(measured_order(c, label) - order) < 0.3);
   }
   // Without the key Gauss's method moves velocities, and boris_sdc always does: the key leaves it alone.
   const auto end_of = [&](const std::string& key, const std::string& method) {
