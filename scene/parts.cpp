@@ -8,6 +8,7 @@
 #include "forces/bonded.hpp"
 #include "forces/coulomb.hpp"
 #include "forces/electromagnetic_fields.hpp"
+#include "forces/ewald.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
 #include "forces/gr_potential.hpp"
@@ -199,6 +200,7 @@ Parts standard_parts() {
   parts.add_force<BuckinghamForce>();
   parts.add_force<ReactionFieldForce>();
   parts.add_force<Coulomb>();
+  parts.add_force<Ewald>();
   parts.add_force<HarmonicBond>();
   parts.add_force<Tether>();
   parts.add_force<Bonded>();

@@ -1,0 +1,187 @@
+#pragma once
+/// Charges in a periodic box, all images of all of them: Ewald's sum.
+
+#include "engine/any_force.hpp"
+#include "forces/coulomb.hpp"
+#include "forces/ewald_split.hpp"
+#include "forces/lattice_waves.hpp"
+
+#include <optional>
+#include <string_view>
+
+namespace noether {
+
+/// Charges and all their images, by Ewald's sum; beyond it a conductor.
+///
+///     U = sum_{i<j, r < cutoff} C q_i q_j erfc(alpha r)/r + (2 pi C / V) sum_{0 < |k| < kmax} exp(-k^2/4 alpha^2)/k^2
+///         |sum_i q_i exp(i k.x_i)|^2 - C alpha/sqrt(pi) sum q_i^2 - pi C/(2 V alpha^2) (sum q_i)^2
+///
+/// Excluded pairs and scaled ones are those of nearest images. Unless they are given, alpha and kmax follow from the
+/// cutoff and the error asked for (`SplitErrors`), and from how many charges there are in the box. Of doubles the sums
+/// over particles are counted in whole units: bits depend on no thread, and on no order of particles.
+/// @cost O(n^(3/2)) if the cutoff grows with the box; a sum over all waves for each particle
+/// @source Ewald1921, KolafaPerram1992
+struct Ewald {
+  double cutoff = 0;                 ///< of the near part [length]
+  double relative_error = 1e-5;      ///< asked of forces
+  std::optional<double> alpha = {};  ///< [1/length]
+  std::optional<double> kmax = {};   ///< [1/length]
+
+  static constexpr auto describe() {
+    return part<Ewald>(
+        "ewald", "charges and all their images in a periodic box, by Ewald's sum over waves",
+        formula(
+            "U = sum_{i<j} C q_i q_j erfc(alpha r)/r + 2 pi C/V sum_{k} exp(-k^2/4 alpha^2)/k^2 |sum q exp(i k.x)|^2 "
+            "- C alpha/sqrt(pi) sum q^2 - pi C/(2 V alpha^2) (sum q)^2; without what is excluded"),
+        source("Ewald1921, KolafaPerram1992"),
+        field<&Ewald::cutoff>("cutoff", "length", "where the near part of the pairs ends").required("\"0.9 nm\""),
+        field<&Ewald::relative_error>("relative_error", "1",
+                                      "root mean square error of forces, of that between two typical charges as far "
+                                      "apart as neighbors: C <q^2> (n/V)^(2/3)"),
+        field<&Ewald::alpha>("alpha", "1/length", "where 1/r is split; default: from cutoff and relative_error"),
+        field<&Ewald::kmax>("kmax", "1/length", "largest wave number; default: from alpha and relative_error"));
+  }
+  static constexpr std::string_view only_once = detail::charges_once;
+  ForceClaims claims() const {
+    return {.keeps_angular_momentum = false, .periodic = true, .charges = true, .exclusions = true, .range = cutoff};
+  }
+  /// @throws Error  for a cutoff, an error, an alpha or a wave number that are none
+  void check() const;
+  /// @throws Error  also without a box or charges, and for more waves than anybody waits for
+  template <class Real> void check(const ParticleSystem<Real>& s) const {
+    check();
+    detail::check_lattice(s.box().is_periodic(), s.template has<Charge>(), describe().name);
+    check_waves(s.box(), detail::charge_sums(s).charged);
+  }
+
+  template <class Real>
+    requires(!std::is_same_v<Real, Pack>)
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    const detail::ChargeSums<Real> sums = detail::charge_sums(s);
+    if (sums.charged == 0) return;
+    const Ewald chosen = chosen_for(s.box(), sums.charged);
+    PairForce<detail::ScreenedCharges>{{*chosen.alpha, cutoff}}.add_to(out, s);
+    detail::add_self_energy(out, s, sums, *chosen.alpha);
+    detail::add_smooth_pairs(out, s, *chosen.alpha);
+    chosen.add_waves(out, s);
+  }
+
+  /// The same with alpha and kmax as it takes them for so many charges in a box.
+  Ewald chosen_for(const Box& box, Index charged) const;
+  /// For truth in 113 bits: the same, or where alpha and kmax are not given, one that is right to 1e-13.
+  Ewald reference() const;
+
+ private:
+  void check_waves(const Box& box, Index charged) const;
+  template <class Real> void add_waves(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
+};
+
+namespace detail {
+
+/// Tables of cosines and sines for waves up to `most` along each axis.
+template <class Real> WaveTables<Real> wave_tables(const ParticleSystem<Real>& s, const std::array<int, 3>& most) {
+  using std::sin, std::cos, std::atan;
+  const Real turn = Real(8) * atan(Real(1));
+  WaveTables<Real> tables;
+  tables.n = s.size();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto size = static_cast<std::size_t>((most[k] + 1) * tables.n);
+    tables.cosine[k].resize(size);
+    tables.sine[k].resize(size);
+  }
+  for_blocks(s.size(), [&](Index begin, Index end) {
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      const Real* x = s.positions().component(k);
+      for (int m = 0; m <= most[axis]; ++m) {
+        for (Index i = begin; i < end; ++i) {
+          const Real turns = Real(m) * (x[i] / Real(s.box().edges()[k]));
+          const Real angle = turn * (turns - nearest_whole(turns));
+          const auto at = static_cast<std::size_t>(m * tables.n + i);
+          tables.cosine[axis][at] = cos(angle);
+          tables.sine[axis][at] = sin(angle);
+        }
+      }
+    }
+  });
+  return tables;
+}
+
+/// A wave's k, and A = 4 pi C / V exp(-k^2 / 4 alpha^2) / k^2.
+template <class Real> struct WaveWeight {
+  Vec3<Real> k;
+  Real k2, A;
+
+  WaveWeight(const Wave& wave, const Vec3<double>& edges, double alpha, double constant) {
+    using std::atan, std::exp;
+    const Real pi = Real(4) * atan(Real(1));
+    const Real volume = Real(edges[0]) * Real(edges[1]) * Real(edges[2]);
+    for (int axis = 0; axis < 3; ++axis)
+      k[axis] = Real(2) * pi * Real(wave[static_cast<std::size_t>(axis)]) / Real(edges[axis]);
+    k2 = norm2(k);
+    A = Real(4) * pi * Real(constant) / volume * exp(-k2 / (Real(4) * Real(alpha) * Real(alpha))) / k2;
+  }
+};
+
+}  // namespace detail
+
+template <class Real> void Ewald::add_waves(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  const Vec3<double>& edges = s.box().edges();
+  const std::vector<detail::Wave> waves = detail::waves_up_to(*kmax, edges);
+  std::array<int, 3> most{};
+  for (const detail::Wave& wave : waves) {
+    for (std::size_t k = 0; k < 3; ++k) most[k] = std::max(most[k], std::abs(wave[k]));
+  }
+  const detail::WaveTables<Real> tables = detail::wave_tables(s, most);
+  const detail::WaveLoops<Real> loops = detail::wave_loops<Real>();
+  const Real* q = s.template column<Charge>().data();
+  double unit = 1;  // of sums of doubles: n of the strongest charge are less than 2^61 units
+  if constexpr (std::is_same_v<Real, double>) {
+    const double strongest = std::sqrt(detail::strongest_product(s) / s.units().coulomb_constant);
+    unit = std::ldexp(1.0, std::ilogb(strongest * static_cast<double>(s.size())) + 2 - 61);
+  }
+  std::vector<detail::ActingWave<Real>> acting(waves.size());
+  std::vector<Real> energies(waves.size());
+  for_blocks(static_cast<Index>(waves.size()), [&](Index begin, Index end) {
+    for (auto w = static_cast<std::size_t>(begin); w < static_cast<std::size_t>(end); ++w) {
+      detail::Counted<Real> sum[2];
+      loops.add_up(detail::WaveFactors<Real>(tables, waves[w]), q, s.size(), 1 / unit, sum);
+      const detail::WaveWeight<Real> weight(waves[w], edges, *alpha, s.units().coulomb_constant);
+      const Real re = Real(unit) * Real(sum[0]), im = Real(unit) * Real(sum[1]);
+      acting[w] = {Real(2) * weight.A * re, Real(2) * weight.A * im, {weight.k[0], weight.k[1], weight.k[2]}};
+      energies[w] = weight.A * (re * re + im * im);
+    }
+  });
+  for_blocks(s.size(), [&](Index begin, Index end) {
+    Real felt[3][block_size];
+    for (auto& one : felt) std::fill(one, one + block_size, Real(0));
+    Real* const fields[3] = {felt[0], felt[1], felt[2]};
+    for (std::size_t w = 0; w < waves.size(); ++w)
+      loops.add_fields(detail::WaveFactors<Real>(tables, waves[w]), acting[w], begin, end, fields);
+    for (Index i = begin; i < end; ++i) {
+      if (s.masses()[i] == Real(0)) continue;
+      const Index k = i - begin;
+      out.accelerations().add(i, q[i] / s.masses()[i] * Vec3<Real>(felt[0][k], felt[1][k], felt[2][k]));
+    }
+  });
+  if (!out.wants_energy() && !out.wants_virial()) return;
+  WideSum<Real> energy;
+  WideTensor<Real> virial;
+  for (std::size_t w = 0; w < waves.size(); ++w) {
+    const detail::WaveWeight<Real> weight(waves[w], edges, *alpha, s.units().coulomb_constant);
+    energy += energies[w];
+    const Real by = Real(2) * (Real(1) / weight.k2 + Real(1) / (Real(4) * Real(*alpha) * Real(*alpha)));
+    virial += Mat3<Real>(energies[w] * (Mat3<Real>::Identity() - by * weight.k * weight.k.transpose()));
+  }
+  out.energy(energy);
+  out.virial(virial);
+}
+
+namespace detail {  // compiled once, in ewald.cpp
+
+extern template struct ForceModel<Ewald, double>;
+extern template struct ForceModel<Ewald, Quad>;
+
+}  // namespace detail
+
+}  // namespace noether
