@@ -8,6 +8,8 @@ endif()
 set(documents ${CMAKE_INSTALL_DATADIR}/doc/noether)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CITATION.cff DESTINATION ${documents}
         COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/third_party/pocketfft/LICENSE.md DESTINATION ${documents} RENAME pocketfft-LICENSE.md
+        COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${documents} COMPONENT program
         PATTERN "nightly.md" EXCLUDE)
 # Not what runs have left there.

@@ -64,6 +64,7 @@ wheel_licences() {
   for package in libeigen3-dev libfmt-dev libssl-dev libtomlplusplus-dev libcli11-dev libhwy-dev libgomp1 libquadmath0; do
     [ ! -f "/usr/share/doc/$package/copyright" ] || cp -L "/usr/share/doc/$package/copyright" "$folder/${package%-dev}"
   done
+  cp "$here/third_party/pocketfft/LICENSE.md" "$folder/pocketfft"
   [ ! -f "$hdf5/COPYING" ] || cp "$hdf5/COPYING" "$folder/hdf5"
   package=$(find "$tools"/lib/python3*/site-packages/nanobind-*.dist-info -name 'LICENSE*' | head -n 1)
   [ -z "$package" ] || cp "$package" "$folder/nanobind"

@@ -112,8 +112,9 @@ constexpr std::array names_of_others = {
                 "cutoff_coulomb ",
                 NamePlace::force, "reaction_field", "charges beyond its cutoff are a dielectric", true},
     ForeignName{" ewald ewald_sum ewald_summation ", NamePlace::force, "ewald"},
-    ForeignName{" pme spme pppm p3m coul_long lj_cut_coul_long kspace particle_mesh_ewald ", NamePlace::force, "ewald",
-                "which sums the waves themselves, without a mesh", true},
+    ForeignName{" pme spme smooth_pme particle_mesh ", NamePlace::force, "particle_mesh_ewald"},
+    ForeignName{" pppm p3m coul_long lj_cut_coul_long kspace ", NamePlace::force, "particle_mesh_ewald",
+                "charges and all their images, to a relative_error of forces", true},
     ForeignName{" harmonic bond bonds bond_harmonic harmonic_bonds harmonicbondforce angle angles angle_harmonic "
                 "harmonic_angle dihedral dihedrals torsion torsions periodic_torsion improper impropers fene opls "
                 "charmm amber gaff morse_bond bond_morse class2 ryckaert_bellemans ",

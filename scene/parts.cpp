@@ -19,6 +19,7 @@
 #include "forces/lennard_jones.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/pair_potentials.hpp"
+#include "forces/particle_mesh_ewald.hpp"
 #include "forces/post_newtonian.hpp"
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
@@ -201,6 +202,7 @@ Parts standard_parts() {
   parts.add_force<ReactionFieldForce>();
   parts.add_force<Coulomb>();
   parts.add_force<Ewald>();
+  parts.add_force<ParticleMeshEwald>();
   parts.add_force<HarmonicBond>();
   parts.add_force<Tether>();
   parts.add_force<Bonded>();

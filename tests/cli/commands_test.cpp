@@ -300,7 +300,7 @@ TEST_CASE("exclusions that no force leaves out are warned of", "[cli][messages]"
   CHECK(has(output(pair, run + springs),
             "\nwarning: exclusions have no effect: no force of this scene leaves pairs out; forces that do are "
             "lennard_jones, wca, "
-            "morse, buckingham, reaction_field\n"));
+            "morse, buckingham, reaction_field, coulomb, ewald, particle_mesh_ewald\n"));
   CHECK_FALSE(has(output(pair, run + " --out b"), "warning"));
 }
 

@@ -93,7 +93,8 @@ TEST_CASE("names of other programs get what there is here", "[proposals]") {
   CHECK(method("ABA(10,6,4)") == "; did you mean 'aba_10_6_4'?");  // as README has it
   CHECK(method("Blanes-Moan") == "; did you mean 'blanes_moan_s6'?");
   CHECK(method("yoshida_4_integrator") == "; did you mean 'yoshida_4'?");
-  CHECK(method("PME").starts_with("; in its place there is type = \"ewald\" in [[hamiltonian.force]] ("));
+  CHECK(
+      method("PPPM").starts_with("; in its place there is type = \"particle_mesh_ewald\" in [[hamiltonian.force]] ("));
   CHECK(method("shake").starts_with("; in its place there is type = \"distance\" in [[hamiltonian.constraint]] ("));
   CHECK(method("qqqqqqqq") == "; see the list");
 
@@ -101,7 +102,8 @@ TEST_CASE("names of other programs get what there is here", "[proposals]") {
   CHECK(force("lj/cut") == "; did you mean 'lennard_jones'?");
   CHECK(force("rf") == "; did you mean 'reaction_field'?");
   CHECK(force("coul/cut").starts_with("; in its place there is 'reaction_field' ("));
-  CHECK(force("pme").starts_with("; in its place there is 'ewald' ("));
+  CHECK(force("pme") == "; did you mean 'particle_mesh_ewald'?");
+  CHECK(force("pppm").starts_with("; in its place there is 'particle_mesh_ewald' ("));
   CHECK(force("Ewald Sum") == "; did you mean 'ewald'?");
   CHECK(force("morse_bond").starts_with("; in its place there is 'bonded' ("));
   CHECK(force("gravitty") == "; did you mean 'gravity'?");
