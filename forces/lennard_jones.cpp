@@ -2,12 +2,14 @@
 
 #include "forces/lennard_jones_mixed_simd.hpp"
 #include "forces/lennard_jones_simd.hpp"
+#include "forces/pair_chunk_simd.hpp"
 #include "forces/pair_groups.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <numbers>
 
 namespace noether {
@@ -35,6 +37,41 @@ LennardJonesStyle style_of(Cutoff cutoff) {
   }
 }
 
+/// Whether the kernels of Lennard-Jones have no such style.
+bool is_of_other_programs(Cutoff style) {
+  return style == Cutoff::potential_switch || style == Cutoff::charmm_switch || style == Cutoff::force_switch;
+}
+
+std::string_view name_of_style(Cutoff style) {
+  const auto& all = EnumNames<Cutoff>::values;
+  return std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.first == style; })->second;
+}
+
+/// Whether what a style leaves out is the energy of pairs times 1 - S.
+bool has_tail(Cutoff style) {
+  return style == Cutoff::plain || (detail::is_switched(style) && style != Cutoff::force_switch);
+}
+
+/// int (1 - S) U r^2 dr from where a switch begins to the cutoff [energy length^3]: by the five points of Gauss, on
+/// parts that are each 2 % longer than the one before, or shorter.
+double left_out_by_switch(const LennardJonesRow& row, Cutoff style, double cutoff, double from) {
+  constexpr double nodes[5] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
+  constexpr double weights[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+                                 0.2369268850561891};
+  const double span = std::log(cutoff / from), width = cutoff * cutoff - from * from;
+  const double parts = std::max(32.0, std::ceil(span / 0.02)), half = span / parts / 2;
+  double sum = 0;
+  for (double part = 0; part < parts; ++part) {
+    for (int k = 0; k < 5; ++k) {
+      const double r = from * std::exp((2 * part + 1 + nodes[k]) * half), r2 = r * r, inverse6 = 1 / (r2 * r2 * r2);
+      const double t = style == Cutoff::potential_switch ? (r - from) / (cutoff - from) : (r2 - from * from) / width;
+      const double energy = inverse6 * (inverse6 * row.energy12 - row.energy6);
+      sum += weights[k] * half * (1 - detail::Switch<double>(style, t).value) * energy * r2 * r;
+    }
+  }
+  return sum;
+}
+
 /// The row of a pair of types.
 LennardJonesRow row_of(const PairKind& kind, double cutoff, Cutoff cutoff_style, double switch_from) {
   const double s3 = kind.sigma * kind.sigma * kind.sigma, s6 = s3 * s3, s12 = s6 * s6;
@@ -50,7 +87,7 @@ LennardJonesRow row_of(const PairKind& kind, double cutoff, Cutoff cutoff_style,
     row.style[1] = 1 / (c2 - switch_from * switch_from);
     return row;
   }
-  if (cutoff_style == Cutoff::plain) return row;
+  if (cutoff_style == Cutoff::plain || is_of_other_programs(cutoff_style)) return row;
   const auto end = detail::lennard_jones_terms(c2, row, LennardJonesStyle::shifted);
   row.style[0] = end.energy;
   if (cutoff_style == Cutoff::shifted_force) {
@@ -87,9 +124,18 @@ void LennardJonesForce::check() const {
                  "is given alone; give both epsilon and sigma, or neither");
   if (epsilon && !(*epsilon >= 0)) refuse_field("epsilon", *epsilon, "is not a valid depth; 0 or more is expected");
   if (sigma && !(*sigma > 0)) refuse_field("sigma", *sigma, "is not a valid length; a length above 0 is expected");
-  if (tail && cutoff_style != Cutoff::plain)
+  if (tail && !has_tail(cutoff_style)) {
     refuse_field("tail", 1,
-                 "is for a plain cutoff only; the other cutoff styles also change the energy within the cutoff");
+                 "is for a plain cutoff or a switch of the energy only; the other cutoff styles also change the energy "
+                 "of near pairs");
+  }
+  if (precision == PairPrecision::mixed && is_of_other_programs(cutoff_style)) {
+    throw Error(
+        fmt::format("precision = \"mixed\" does not support cutoff_style = \"{}\"; leave precision out, or take "
+                    "\"switch_c2\" or \"switch_c4\"",
+                    name_of_style(cutoff_style)),
+        {.key = "precision"});
+  }
 }
 
 void LennardJonesForce::check_types(const Topology* topology, const Box& box) const {
@@ -132,15 +178,26 @@ const detail::LennardJonesTable& LennardJonesForce::table_for(const std::shared_
   for (int a = 0; a < made->types; ++a) {
     for (int b = 0; b < made->types; ++b) {
       const PairKind kind = epsilon ? PairKind{*epsilon, *sigma} : topology->pair_kind(a, b);
-      made->rows.push_back(row_of(kind, cutoff, cutoff_style, switch_from.value_or(default_switch * cutoff)));
+      const double from = switch_from.value_or(default_switch * cutoff);
+      const LennardJonesRow& row = made->rows.emplace_back(row_of(kind, cutoff, cutoff_style, from));
+      if (is_of_other_programs(cutoff_style)) {
+        const detail::LennardJonesOfRow pair{row.force12, row.force6, row.energy12, row.energy6};
+        made->ended.push_back({pair, detail::end_of(pair, cutoff_style, cutoff, from)});
+      }
       if (kind.epsilon > 0) strongest = std::max(strongest, 24 * kind.epsilon / kind.sigma);
-      // 2 pi N_a N_b / V times the integrals of r^2 U and r^3 F beyond the cutoff
+      // 2 pi N_a N_b / V times the integrals of r^2 U and r^3 F over what is left out
       const double s6 = std::pow(kind.sigma, 6), c3 = cutoff * cutoff * cutoff;
       const double repulsion = 4 * kind.epsilon * s6 * s6 / (9 * c3 * c3 * c3),
                    attraction = 4 * kind.epsilon * s6 / (3 * c3);
       const double pairs = 2 * std::numbers::pi * members[at(a)] * members[at(b)];
-      made->tail_energy += pairs * (repulsion - attraction);
-      made->tail_virial += pairs * (12 * repulsion - 6 * attraction);
+      if (tail && detail::is_switched(cutoff_style)) {
+        const double energy = repulsion - attraction + left_out_by_switch(row, cutoff_style, cutoff, from);
+        made->tail_energy += pairs * energy;
+        made->tail_virial += pairs * 3 * energy;
+      } else {
+        made->tail_energy += pairs * (repulsion - attraction);
+        made->tail_virial += pairs * (12 * repulsion - 6 * attraction);
+      }
     }
   }
   made->force_unit = std::ldexp(power_of_two_above(strongest), -unit_bits);
@@ -183,10 +240,67 @@ const detail::LennardJonesMixedTable& LennardJonesForce::mixed_table_for(double 
   return *mixed_table;
 }
 
+namespace {
+
+std::int64_t type_of_record(const double* record) {
+  std::int64_t type = 0;
+  std::memcpy(&type, record + 3, sizeof type);
+  return type;
+}
+
+/// Energies and forces of a chunk of pairs of several types, which begins at row `first`.
+void end_pairs_of_types(const detail::LennardJonesTable& table, const double* records, const PairGroup& group,
+                        std::ptrdiff_t first, PairChunk& chunk) {
+  std::array<std::int64_t, 8> own{};
+  for (std::size_t k = 0; k < 8; ++k) own[k] = type_of_record(records + group.records[k]) * table.types;
+  for (std::ptrdiff_t k = 0; k < 8 * chunk.rows; ++k) {
+    const std::int64_t other = type_of_record(records + group.entries[8 * first + k]);
+    const detail::EndedLennardJones& row = table.ended[at(own[at(k % 8)] + other)];
+    const PairTerms<double> terms = detail::ended<double>(row.pair, row.end, chunk.r2[k], 0.0);
+    chunk.energy[k] = terms.energy;
+    chunk.force[k] = terms.force;
+  }
+}
+
+}  // namespace
+
+/// The styles of other programs go through the lanes of any pair potential.
+void LennardJonesForce::add_ended(ForceSink<double>& out, const ParticleSystem<double>& s,
+                                  const detail::LennardJonesTable& known, NeighborList& list) const {
+  list.update(s);
+  const PairChunkKernels& kernels = pair_chunk_kernels();
+  const std::size_t all = out.wants_energy() || out.wants_virial() ? 1 : 0;
+  const auto quick = kernels.add[0][all], careful = kernels.add[1][all];
+  const PairFilter filter{list.records(), cutoff * cutoff, 0, known.force_unit, known.energy_unit, nullptr, 0};
+  const detail::PairLimits limits{cutoff, 0, detail::strongest_pair * known.force_unit, "Lennard-Jones"};
+  const detail::PairLoop loop = detail::pair_loop<detail::LennardJonesOfRow>(cutoff_style);
+  detail::add_pair_groups(
+      out, s, list, {known.force_unit, known.energy_unit}, limits,
+      [&](const PairGroup& group, PairSums& found, bool care) {
+        PairChunk chunk;
+        std::memset(&found, 0, sizeof found);
+        for (std::ptrdiff_t row = 0; row < group.rows; row += chunk.rows) {
+          chunk.rows = std::min(PairChunk::most_rows, group.rows - row);
+          kernels.load(filter, group, row, chunk);
+          if (known.only_row < 0) {
+            end_pairs_of_types(known, filter.records, group, row, chunk);
+          } else {
+            const detail::EndedLennardJones& one = known.ended[at(known.only_row)];
+            loop(&one.pair, one.end, {chunk.r2, chunk.product, 8 * chunk.rows}, chunk.energy, chunk.force);
+          }
+          (care ? careful : quick)(filter, chunk, found);
+        }
+      },
+      selection_of(out, list, known));
+  detail::add_special_pairs(out, s, terms_of(s), limits);
+  add_tail(out, s);
+}
+
 void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const {
   const detail::LennardJonesTable& known = table_for(s.shared_topology(), s.size());
   std::optional<NeighborList> own;
   NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(cutoff);
+  if (!known.ended.empty()) return add_ended(out, s, known, list);
   const bool mixed = precision == PairPrecision::mixed, sums = out.wants_energy() || out.wants_virial();
   if (mixed) list.update(s, NeighborList::Numbers::whole);
   if (!mixed || sums) list.update(s);

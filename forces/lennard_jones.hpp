@@ -5,6 +5,7 @@
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 #include "forces/lennard_jones_row.hpp"
+#include "forces/pair_force.hpp"
 #include "forces/pairs.hpp"
 #include "neighbors/neighbor_list.hpp"
 #include "numbers/pack.hpp"
@@ -54,9 +55,28 @@ PairTerms<Real> lennard_jones_terms(const Real& r2, const LennardJonesRow& row, 
   return {energy * end.value, end.value * force - Real(2) * b * energy * end.slope};
 }
 
+/// A pair of types by its row, for the styles that the kernels of Lennard-Jones do not have.
+struct LennardJonesOfRow {
+  double force12 = 0, force6 = 0, energy12 = 0, energy6 = 0;
+
+  double scale() const { return force6; }
+  template <class Real> PairTerms<Real> operator()(const Real& r2) const {
+    const Real inverse2 = Real(1) / r2, inverse6 = inverse2 * inverse2 * inverse2;
+    return {inverse6 * (inverse6 * Real(energy12) - Real(energy6)),
+            inverse2 * (inverse6 * (inverse6 * Real(force12) - Real(force6)))};
+  }
+};
+
+/// How it acts with one of these styles.
+struct EndedLennardJones {
+  LennardJonesOfRow pair;
+  PairEnd end;
+};
+
 /// The rows of all pairs of types, and what they were made for.
 struct LennardJonesTable {
-  std::vector<LennardJonesRow> rows;  ///< shape (types, types)
+  std::vector<LennardJonesRow> rows;     ///< shape (types, types)
+  std::vector<EndedLennardJones> ended;  ///< the same, for styles of other programs; empty for all other styles
   int types = 1;
   std::ptrdiff_t only_row = 0;  ///< by which all pairs act that act at all; -1: there are more
   LennardJonesStyle style = LennardJonesStyle::shifted;
@@ -75,7 +95,7 @@ struct LennardJonesMixedTable {
 };
 }  // namespace detail
 
-/// Lennard-Jones pairs, cut off in one of five ways.
+/// Lennard-Jones pairs, cut off in one of eight ways.
 ///
 ///     U = sum over pairs with r < cutoff of 4 epsilon ((sigma/r)^12 - (sigma/r)^6), as `cutoff_style` ends it
 ///
@@ -88,6 +108,12 @@ struct LennardJonesMixedTable {
 /// forces have the same bits for any neighbor list and any number of threads, and add up to nothing exactly. A pair
 /// stronger than 2^61 units ends the run as `overlap`.
 ///
+/// A tail is, for N particles in a volume V,
+///
+///     E = 2 pi N^2 / V (int_rc^inf U r^2 dr + int_rs^rc (1 - S) U r^2 dr)
+///
+/// with S the switch from rs to rc, where there is one. Its virial is 3 E then: the energy of pairs has no jump.
+///
 /// In mixed precision distances are differences of whole numbers, of 2^-28 of half the longest edge and two cutoffs or
 /// finer, and the force of a pair is right to 1e-6 of itself and 2^-21 of the strongest attraction's scale; the sums
 /// are as exact as the others, so that all that is said of bits and of momentum holds. Energies and virials are those
@@ -98,7 +124,7 @@ struct LennardJonesForce {
   double cutoff = 0;                               ///< [length]
   Cutoff cutoff_style = Cutoff::shifted_force;     ///<
   std::optional<double> switch_from = {};          ///< where a switch begins [length]; default: 0.9 cutoff
-  bool tail = false;                               ///< add what pairs beyond the cutoff give on the average
+  bool tail = false;                               ///< add what the cutoff or a switch leaves out, on the average
   std::optional<double> epsilon = {}, sigma = {};  ///< of all pairs [energy], [length]; default: by types
   PairPrecision precision = PairPrecision::full;   ///<
   mutable std::shared_ptr<const detail::LennardJonesTable> table = {};  ///< made from these and the particles' types
@@ -113,8 +139,8 @@ struct LennardJonesForce {
             .required("\"1 nm\""),
         field<&LennardJonesForce::cutoff_style>("cutoff_style", "1", "how the potential ends at the cutoff"),
         field<&LennardJonesForce::switch_from>("switch_from", "length", "where a switch begins; default: 0.9 cutoff"),
-        field<&LennardJonesForce::tail>("tail", "1",
-                                        "adds the energy and pressure of pairs beyond the cutoff, for g(r) = 1"),
+        field<&LennardJonesForce::tail>(
+            "tail", "1", "adds the energy and pressure that a cutoff or a switch leaves out, for g(r) = 1"),
         field<&LennardJonesForce::epsilon>("epsilon", "energy", "depth for all pairs; default: by types"),
         field<&LennardJonesForce::sigma>("sigma", "length", "length for all pairs; default: by types"),
         field<&LennardJonesForce::precision>("precision", "1", "mixed: forces of pairs in single precision"));
@@ -156,6 +182,8 @@ struct LennardJonesForce {
   void check_types(const Topology* topology, const Box& box) const;
   const detail::LennardJonesTable& table_for(const std::shared_ptr<const Topology>& topology, Index n) const;
   const detail::LennardJonesMixedTable& mixed_table_for(double spacing) const;
+  void add_ended(ForceSink<double>& out, const ParticleSystem<double>& s, const detail::LennardJonesTable& known,
+                 NeighborList& list) const;
   void add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const;
   template <class Real> auto terms_of(const ParticleSystem<Real>& s) const;
   template <class Real> void add_tail(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
@@ -166,8 +194,13 @@ template <class Real> auto LennardJonesForce::terms_of(const ParticleSystem<Real
   return [&known = table_for(s.shared_topology(), s.size()), topology = s.topology()](Index i, Index j, const Real& r2,
                                                                                       const auto& add) {
     const int a = topology != nullptr ? topology->type(i) : 0, b = topology != nullptr ? topology->type(j) : 0;
-    const LennardJonesRow& row = known.rows[static_cast<std::size_t>(a * known.types + b)];
-    if (r2 < Real(row.range2)) add(detail::lennard_jones_terms(r2, row, known.style));
+    const auto place = static_cast<std::size_t>(a * known.types + b);
+    const LennardJonesRow& row = known.rows[place];
+    if (!(r2 < Real(row.range2))) return;
+    if (known.ended.empty())
+      add(detail::lennard_jones_terms(r2, row, known.style));
+    else
+      add(detail::ended<Real>(known.ended[place].pair, known.ended[place].end, r2, Real(0)));
   };
 }
 

@@ -2,11 +2,13 @@
 /// A pair force from a potential of a few lines.
 
 #include "engine/charge.hpp"
+#include "engine/sums.hpp"
 #include "forces/pairs.hpp"
 #include "forces/secant.hpp"
 #include "numbers/pack.hpp"
 #include "numbers/simd_loop.hpp"
 
+#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -47,6 +49,16 @@ concept ChargedPairPotential = requires(const P& potential, double r2, double pr
 template <class P>
 concept EndsByItself = requires(const P& potential) {
   { potential.range() } -> std::convertible_to<double>;
+};
+
+/// A potential between charges of which a part, what the surrounding answers, also acts between excluded pairs and on
+/// each charge itself, where `answers_excluded` is true.
+///
+///     template <class Real> PairTerms<Real> answer_terms(const Real& r2, const Real& product) const;
+template <class P>
+concept AnswersExcluded = ChargedPairPotential<P> && requires(const P& potential, double r2, double product) {
+  { potential.answers_excluded } -> std::convertible_to<bool>;
+  { potential.answer_terms(r2, product) } -> std::convertible_to<PairTerms<double>>;
 };
 
 template <class P>
@@ -101,11 +113,14 @@ template <class P> double scale_of(const P& potential, double product) {
 }
 
 /// How a potential ends: energy less that of `last`, less its force times r; or times a switch of t = (r2 - from2) over
-/// what is left to the square of the cutoff. What charges add to `last` is `charged` times their product.
+/// what is left to the square of the cutoff, of `potential_switch` of (r - from) over what is left to the cutoff; or
+/// force plus (r - from)^2 (bend[0] + bend[1] (r - from)). What charges add to `last` and `bend` is `charged` times
+/// their product.
 struct PairEnd {
   Cutoff style = Cutoff::plain;
   PairTerms<double> last{}, charged{};
-  double from2 = 0, inverse = 0;
+  double from = 0, from2 = 0, inverse = 0;
+  double bend[2] = {0, 0}, charged_bend[2] = {0, 0};
 };
 
 /// Times a switch of t = (r2 - from2) inverse.
@@ -116,6 +131,31 @@ template <class Real>
   t = t > Real(0) ? t : Real(0);
   const Switch<Real> off(style, t);
   return {bare.energy * off.value, off.value * bare.force - Real(2 * inverse) * bare.energy * off.slope};
+}
+
+/// The same of t = (r - from) inverse.
+template <class Real>
+[[gnu::always_inline]] inline PairTerms<Real> switched_in_r(const PairTerms<Real>& bare, Cutoff style, double from,
+                                                            double inverse, const Real& r2) {
+  using std::sqrt;
+  const Real r = sqrt(r2);
+  Real t = (r - Real(from)) * Real(inverse);
+  t = t > Real(0) ? t : Real(0);
+  const Switch<Real> off(style, t);
+  return {bare.energy * off.value, off.value * bare.force - Real(inverse) * bare.energy * off.slope / r};
+}
+
+/// With the force bent to 0 from `from` on, and the energy less `shift`.
+template <class Real>
+[[gnu::always_inline]] inline PairTerms<Real> bent(const PairTerms<Real>& bare, const Real& shift,
+                                                   const std::array<Real, 2>& bend, double from, const Real& r2) {
+  using std::sqrt;
+  const Real r = sqrt(r2);
+  Real x = r - Real(from);
+  x = x > Real(0) ? x : Real(0);
+  const Real x2 = x * x;
+  return {bare.energy - shift - x2 * x * (bend[0] / Real(3) + bend[1] * x / Real(4)),
+          bare.force + x2 * (bend[0] + bend[1] * x) / r};
 }
 
 template <class Real, class P>
@@ -134,7 +174,68 @@ template <class Real, class P>
     const Real r = sqrt(r2);
     return {bare.energy - last_energy + last_force * r, bare.force - last_force / r};
   }
+  if (end.style == Cutoff::force_switch) {
+    std::array<Real, 2> bend = {Real(end.bend[0]), Real(end.bend[1])};
+    if constexpr (ChargedPairPotential<P>) {
+      bend[0] += product * Real(end.charged_bend[0]);
+      bend[1] += product * Real(end.charged_bend[1]);
+    }
+    return bent(bare, last_energy, bend, end.from, r2);
+  }
+  if (end.style == Cutoff::potential_switch) return switched_in_r(bare, end.style, end.from, end.inverse, r2);
   return switched(bare, end.style, end.from2, end.inverse, r2);
+}
+
+/// A potential that 113 bits evaluate too.
+template <class P>
+concept InQuad = requires(const P& potential, const Quad& x) {
+  { potential(x) } -> std::same_as<PairTerms<Quad>>;
+}
+|| requires(const P& potential, const Quad& x) {
+  { potential(x, x) } -> std::same_as<PairTerms<Quad>>;
+};
+
+/// What a potential and charges of this product have at the cutoff of a style that takes it off: `last` and `bend`.
+template <class P> PairEnd last_of(const P& potential, Cutoff style, double cutoff, double from, double product) {
+  PairEnd end;
+  end.last = bare_terms<double, P>(potential, cutoff * cutoff, product);
+  if (style == Cutoff::shifted_force) {
+    end.last.force *= cutoff;
+    end.last.energy += end.last.force * cutoff;
+  }
+  if (style != Cutoff::force_switch) return end;
+  // The force F and its derivative there, by a difference that 113 bits make exact for doubles: from the outside, where
+  // parts that end there by themselves are gone.
+  constexpr bool wide = InQuad<P>;
+  using Number = std::conditional_t<wide, Quad, double>;
+  const Number rc(cutoff), h = rc * Number(wide ? 1e-10 : 1e-5), width = rc - Number(from), charges(product);
+  const auto terms = [&](const Number& r) { return bare_terms<Number, P>(potential, r * r, charges); };
+  const auto force = [&](const Number& r) { return terms(r).force * r; };
+  const Number F = force(rc), slope = (Number(4) * force(rc + h) - Number(3) * F - force(rc + h + h)) / (h + h);
+  const Number bend0 = (slope * width - Number(3) * F) / (width * width),
+               bend1 = (Number(2) * F - slope * width) / (width * width * width);
+  const Number shift = terms(rc).energy - width * width * width * (bend0 / Number(3) + bend1 * width / Number(4));
+  end.bend[0] = static_cast<double>(bend0);
+  end.bend[1] = static_cast<double>(bend1);
+  end.last.energy = static_cast<double>(shift);
+  return end;
+}
+
+/// How a potential ends at a cutoff. @param from  where a switch begins [length]
+template <class P> PairEnd end_of(const P& potential, Cutoff style, double cutoff, double from) {
+  PairEnd end{.style = style};
+  if (style == Cutoff::plain) return end;
+  const PairEnd neutral = last_of(potential, style, cutoff, from, 0), unit = last_of(potential, style, cutoff, from, 1);
+  end.last = neutral.last;
+  end.charged = {unit.last.energy - end.last.energy, unit.last.force - end.last.force};
+  for (std::size_t k = 0; k < 2; ++k) {
+    end.bend[k] = neutral.bend[k];
+    end.charged_bend[k] = unit.bend[k] - neutral.bend[k];
+  }
+  end.from = from;
+  end.from2 = from * from;
+  end.inverse = 1 / (style == Cutoff::potential_switch ? cutoff - from : cutoff * cutoff - from * from);
+  return end;
 }
 
 /// Distances of pairs, and what their charges multiply to, shape (count), a multiple of eight.
@@ -174,6 +275,12 @@ template <class P> PairLoop pair_loop(Cutoff style) {
       return simd_loop<loop_over_pairs<P, Cutoff::shifted_force>>();
     case Cutoff::switch_c2:
       return simd_loop<loop_over_pairs<P, Cutoff::switch_c2>>();
+    case Cutoff::potential_switch:
+      return simd_loop<loop_over_pairs<P, Cutoff::potential_switch>>();
+    case Cutoff::charmm_switch:
+      return simd_loop<loop_over_pairs<P, Cutoff::charmm_switch>>();
+    case Cutoff::force_switch:
+      return simd_loop<loop_over_pairs<P, Cutoff::force_switch>>();
     default:
       return simd_loop<loop_over_pairs<P, Cutoff::switch_c4>>();
   }
@@ -275,9 +382,11 @@ template <PairPotential P> struct PairForce : P {
                                   name()};
       detail::add_pairs_in_lanes(out, s, plan);
       detail::add_special_pairs(out, s, terms, detail::limits_of(plan));
+      add_answers(out, s, detail::limits_of(plan));
     } else {
       detail::add_pairs_in_turn(out, s, reach(), terms);
       detail::add_special_pairs(out, s, terms, {.range = reach()});
+      add_answers(out, s, {.range = reach()});
     }
   }
 
@@ -287,9 +396,51 @@ template <PairPotential P> struct PairForce : P {
     requires(!std::is_same_v<Real, Pack>)
   void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
     detail::add_pair_secants(out, from, to, reach(), nearest_pair(), terms_of(to));
+    if constexpr (AnswersExcluded<P>) {
+      if (!this->answers_excluded || to.topology() == nullptr) return;
+      const auto terms = answers_of(to);
+      Secants<Real> secants(out, from, to);
+      for (const auto& [pair, part] : detail::taken_away(*to.topology())) {
+        secants.pair({.i = pair.first, .j = pair.second},
+                     [&, i = pair.first, j = pair.second, part = part](const Real& r2) {
+                       PairTerms<Real> found{Real(0), Real(0)};
+                       terms(i, j, r2, [&](const PairTerms<Real>& one) {
+                         found = {Real(part) * one.energy, Real(part) * one.force};
+                       });
+                       return found;
+                     });
+      }
+    }
   }
 
  private:
+  /// What the surrounding answers to an excluded pair, as `terms_of`.
+  template <class Real> auto answers_of(const ParticleSystem<Real>& s) const requires AnswersExcluded<P> {
+    return [this, charges = s.template column<Charge>().data(), types = detail::pair_types(s.topology(), first, second),
+            topology = s.topology(),
+            constant = Real(s.units().coulomb_constant)](Index i, Index j, const Real& r2, const auto& add) {
+      if (!is_between(types, topology, i, j) || !(r2 < Real(reach() * reach()))) return;
+      add(P::answer_terms(r2, Real(constant * charges[i] * charges[j])));
+    };
+  }
+  /// Adds what the surrounding answers to excluded pairs, to what is taken away from scaled ones, and to each charge
+  /// itself, which is half of a pair at no distance.
+  template <class Real>
+  void add_answers(ForceSink<Real>& out, const ParticleSystem<Real>& s, const detail::PairLimits& limits) const {
+    if constexpr (AnswersExcluded<P>) {
+      if (!this->answers_excluded) return;
+      const auto answers = answers_of(s);
+      if (s.topology() != nullptr) detail::add_scaled_pairs(out, s, detail::taken_away(*s.topology()), answers, limits);
+      if (!out.wants_energy()) return;
+      out.energy(sum_over<Real>(s.size(), [&](Index i) {
+        Real energy(0);
+        answers(i, i, Real(0), [&](const PairTerms<Real>& one) { energy = one.energy / Real(2); });
+        return energy;
+      }));
+    } else {
+      static_cast<void>(limits);
+    }
+  }
   /// What a pair does, for the loops over pairs.
   template <class Real> auto terms_of(const ParticleSystem<Real>& s) const {
     const Real* charges = nullptr;
@@ -331,23 +482,7 @@ template <PairPotential P> struct PairForce : P {
     }
   }
   detail::PairEnd end() const {
-    detail::PairEnd end{.style = cutoff_style};
-    if (cutoff_style == Cutoff::plain) return end;
-    const double from = switch_from.value_or(0.9 * reach());
-    end.last = last(0);
-    end.charged = last(1);
-    end.charged = {end.charged.energy - end.last.energy, end.charged.force - end.last.force};
-    end.from2 = from * from;
-    end.inverse = 1 / (reach() * reach() - from * from);
-    return end;
-  }
-  /// What is taken off at the cutoff from charges of this product.
-  PairTerms<double> last(double product) const {
-    PairTerms<double> last = detail::bare_terms<double, P>(*this, reach() * reach(), product);
-    if (cutoff_style != Cutoff::shifted_force) return last;
-    last.force *= reach();
-    last.energy += last.force * reach();
-    return last;
+    return detail::end_of<P>(*this, cutoff_style, reach(), switch_from.value_or(0.9 * reach()));
   }
 };
 

@@ -120,12 +120,16 @@ struct LennardJonesPair {
 /// C is the factor of Coulomb's law in the units of the particles. Within a conductor forces are continuous at the
 /// radius; else they jump there. With a switch, that of Cutoff::switch_c4, four derivatives of the energy are
 /// continuous: without one each pair that crosses the radius takes a little of the energy, and liquids cool. Excluded
-/// pairs feel neither their charges nor what the dielectric answers; scaled pairs both, scaled.
+/// pairs feel neither their charges nor what the dielectric answers; scaled pairs both, scaled. With `answers_excluded`
+/// the dielectric answers to all charges, as in GROMACS: excluded pairs nearer than the radius have
+/// C q_i q_j (k r^2 - 1/radius - k radius^2), of scaled pairs only 1/r is scaled, and each charge has half of that of a
+/// pair at no distance, a constant.
 /// @source Tironi1995
 struct ReactionField {
   double radius = 0;                      ///< of the cavity [length]
   std::optional<double> dielectric = {};  ///< relative permittivity outside; default: a conductor, where it is infinite
   std::optional<double> switched_from = {};  ///< where a switch begins [length]; default: there is none
+  bool answers_excluded = false;             ///< the dielectric answers to excluded pairs and to each charge itself too
 
   static constexpr auto describe() {
     return part<ReactionField>(
@@ -135,7 +139,10 @@ struct ReactionField {
         source("Tironi1995"), field<&ReactionField::radius>("cutoff", "length", "radius of the cavity").required("1"),
         field<&ReactionField::dielectric>("dielectric", "1", "relative permittivity outside; default: a conductor"),
         field<&ReactionField::switched_from>("switch_from", "length",
-                                             "where a switch as that of switch_c4 begins; default: there is none"));
+                                             "where a switch as that of switch_c4 begins; default: there is none"),
+        field<&ReactionField::answers_excluded>(
+            "answers_excluded", "1",
+            "the dielectric answers to excluded pairs and each charge itself too, as in GROMACS"));
   }
   void check() const;
   double range() const { return radius; }
@@ -144,15 +151,22 @@ struct ReactionField {
     using std::sqrt;
     const double k = answer(), last = 1 / radius + k * radius * radius;
     const Real inverse = Real(1) / sqrt(r2);
-    const PairTerms<Real> bare{product * (inverse + Real(k) * r2 - Real(last)),
-                               product * (inverse * inverse * inverse - Real(2 * k))};
+    return off({product * (inverse + Real(k) * r2 - Real(last)), product * (inverse * inverse * inverse - Real(2 * k))},
+               r2);
+  }
+  /// The same without the charges' own 1/r.
+  template <class Real> PairTerms<Real> answer_terms(const Real& r2, const Real& product) const {
+    const double k = answer(), last = 1 / radius + k * radius * radius;
+    return off({product * (Real(k) * r2 - Real(last)), -product * Real(2 * k)}, r2);
+  }
+
+ private:
+  template <class Real> [[gnu::always_inline]] PairTerms<Real> off(const PairTerms<Real>& bare, const Real& r2) const {
     // Without a switch one that begins at the end: a branch would keep loops from going in lanes.
     const double range2 = radius * radius, from = switched_from.value_or(radius), from2 = from * from;
     const double width = range2 - from2;
     return detail::switched(bare, Cutoff::switch_c4, from2, width > 0 ? 1 / width : 0, r2);
   }
-
- private:
   /// k [1/length^3].
   double answer() const {
     const double inverse = 1 / dielectric.value_or(std::numeric_limits<double>::infinity());

@@ -14,7 +14,7 @@ void check_cutoff(double cutoff, Cutoff style, std::optional<double> switch_from
   if (switch_from && !(*switch_from > 0 && *switch_from < cutoff)) {
     refuse_field("switch_from", *switch_from, fmt::format("does not lie between 0 and the cutoff {}", cutoff));
   }
-  if (switch_from && style != Cutoff::switch_c2 && style != Cutoff::switch_c4) {
+  if (switch_from && !is_switched(style)) {
     refuse_field("switch_from", *switch_from,
                  "is for a switched cutoff only; take it out, or add cutoff_style = \"switch_c2\" or \"switch_c4\"");
   }

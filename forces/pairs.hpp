@@ -22,23 +22,35 @@ namespace noether {
 
 /// How pair forces end at the cutoff r_c.
 enum class Cutoff : std::uint8_t {
-  plain,          ///< cut: the energy jumps when a pair crosses r_c
-  shifted,        ///< U - U(r_c): the force jumps
-  shifted_force,  ///< U - U(r_c) - (r - r_c) U'(r_c): the force is continuous
-  switch_c2,      ///< times a polynomial in r^2 from `switch_from` on: two continuous derivatives
-  switch_c4,      ///< the same with four continuous derivatives, for shadow Hamiltonians and higher order
+  plain,             ///< cut: the energy jumps when a pair crosses r_c
+  shifted,           ///< U - U(r_c): the force jumps
+  shifted_force,     ///< U - U(r_c) - (r - r_c) U'(r_c): the force is continuous
+  switch_c2,         ///< times a polynomial in r^2 from `switch_from` on: two continuous derivatives
+  switch_c4,         ///< the same with four continuous derivatives, for shadow Hamiltonians and higher order
+  potential_switch,  ///< the polynomial of switch_c2 in r, as OpenMM and GROMACS have it: two continuous derivatives
+  charmm_switch,     ///< CHARMM's cubic polynomial in r^2: one continuous derivative
+  force_switch,  ///< less a shift below `switch_from`, from there on the force less a cubic polynomial in r that takes
+                 ///< it and its derivative to 0, as GROMACS and CHARMM have it: two continuous derivatives
 };
 
 template <> struct EnumNames<Cutoff> {
-  static constexpr std::array<std::pair<Cutoff, std::string_view>, 5> values = {
+  static constexpr std::array<std::pair<Cutoff, std::string_view>, 8> values = {
       {{Cutoff::plain, "plain"},
        {Cutoff::shifted, "shifted"},
        {Cutoff::shifted_force, "shifted_force"},
        {Cutoff::switch_c2, "switch_c2"},
-       {Cutoff::switch_c4, "switch_c4"}}};
+       {Cutoff::switch_c4, "switch_c4"},
+       {Cutoff::potential_switch, "potential_switch"},
+       {Cutoff::charmm_switch, "charmm_switch"},
+       {Cutoff::force_switch, "force_switch"}}};
 };
 
 namespace detail {
+
+/// Whether a style begins at `switch_from`.
+inline bool is_switched(Cutoff style) {
+  return style != Cutoff::plain && style != Cutoff::shifted && style != Cutoff::shifted_force;
+}
 
 /// S and dS/dt of a switch that falls from 1 at t = 0 to 0 at t = 1.
 template <class Real> struct Switch {
@@ -46,9 +58,12 @@ template <class Real> struct Switch {
 
   [[gnu::always_inline]] Switch(Cutoff style, const Real& t) {
     const Real t2 = t * t, u = Real(1) - t, u2 = u * u;
-    if (style == Cutoff::switch_c2) {
+    if (style == Cutoff::switch_c2 || style == Cutoff::potential_switch) {
       value = Real(1) - t2 * t * (Real(10) + t * (Real(6) * t - Real(15)));
       slope = Real(-30) * t2 * u2;
+    } else if (style == Cutoff::charmm_switch) {
+      value = Real(1) - t2 * (Real(3) - Real(2) * t);
+      slope = Real(-6) * t * u;
     } else {
       value = Real(1) - t2 * t2 * t * (Real(126) + t * (Real(-420) + t * (Real(540) + t * (Real(70) * t - Real(315)))));
       slope = Real(-630) * t2 * t2 * u2 * u2;
@@ -171,15 +186,12 @@ template <class Real> struct ScaledPairFound {
   bool acts;
 };
 
-/// Adds the pairs whose force the topology scales, at their nearest images, and, in a box that is small for the range,
-/// all others in range of these and of excluded pairs; doubles within their limits, or the run ends. All threads find
-/// the forces of scaled pairs, one adds them, in the order of the pairs.
+/// Adds these pairs at their nearest images, scaled; doubles within their limits, or the run ends. All threads find the
+/// forces, one adds them, in the order of the pairs.
 /// @param terms  as above
 template <class Real, class Terms>
-void add_special_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, const Terms& terms,
-                       const PairLimits& limits) {
-  if (s.topology() == nullptr) return;
-  const std::vector<Topology::ScaledPair>& pairs = s.topology()->scaled_pairs;
+void add_scaled_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s,
+                      const std::vector<Topology::ScaledPair>& pairs, const Terms& terms, const PairLimits& limits) {
   thread_local std::vector<ScaledPairFound<Real>> memory;
   if (memory.size() < pairs.size()) memory.resize(pairs.size());
   std::vector<ScaledPairFound<Real>>& all = memory;  // this thread's, written by all
@@ -207,9 +219,29 @@ void add_special_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, cons
     out.pair(i, j, found.force);
     out.energy(found.energy);
   }
+}
+
+/// Adds the pairs whose force the topology scales, at their nearest images, and, in a box that is small for the range,
+/// all others in range of these and of excluded pairs.
+/// @param terms  as above
+template <class Real, class Terms>
+void add_special_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, const Terms& terms,
+                       const PairLimits& limits) {
+  if (s.topology() == nullptr) return;
+  const std::vector<Topology::ScaledPair>& pairs = s.topology()->scaled_pairs;
+  add_scaled_pairs(out, s, pairs, terms, limits);
   if (!feels_far_images(s.box(), limits.range)) return;
   for (const Topology::Pair& pair : s.topology()->exclusions) add_far_images(out, s, pair, terms, limits);
   for (const Topology::ScaledPair& scaled : pairs) add_far_images(out, s, scaled.pair, terms, limits);
+}
+
+/// The pairs that the topology excludes or scales, with what that takes away from each.
+inline const std::vector<Topology::ScaledPair>& taken_away(const Topology& topology) {
+  thread_local std::vector<Topology::ScaledPair> pairs;
+  pairs.clear();
+  for (const Topology::Pair& pair : topology.exclusions) pairs.push_back({pair, 1});
+  for (const Topology::ScaledPair& scaled : topology.scaled_pairs) pairs.push_back({scaled.pair, 1 - scaled.factor});
+  return pairs;
 }
 
 /// @throws Error  for a cutoff that is no length, or a switch that begins outside it or that there is none of

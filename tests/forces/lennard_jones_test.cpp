@@ -31,7 +31,7 @@ LennardJonesForce argon(Cutoff style, double cutoff = 2.5) {
 }  // namespace
 
 TEST_CASE("forces, energy and virial in lanes are those of 113 bits, for every end of the range", "[lennard_jones]") {
-  const LennardJonesForce every = argon(test::cutoff_styles[GENERATE(range(0, 5))], 2.2);
+  const LennardJonesForce every = argon(test::cutoff_styles[GENERATE(range(0, 8))], 2.2);
   test::for_liquids(every, [](const LennardJonesForce& force, const ParticleSystem<double>& s) {
     const Evaluated lanes = evaluated<double>(force, s), exact = evaluated<Quad>(force, s);
     REQUIRE_FALSE(lanes.failure);
@@ -288,6 +288,15 @@ TEST_CASE("what a Lennard-Jones force cannot do is refused by name", "[lennard_j
   CHECK_THROWS_WITH(open_tail.check(open),
                     "lennard_jones: tail = true is for a liquid without end, so it needs a periodic box; add a box or "
                     "leave tail out");
+  for (const Cutoff style : {Cutoff::shifted, Cutoff::shifted_force, Cutoff::force_switch}) {
+    open_tail.cutoff_style = style;
+    CHECK_THROWS_WITH(open_tail.check(), Catch::Contains("is for a plain cutoff or a switch of the energy only"));
+  }
+  LennardJonesForce mixed = argon(Cutoff::force_switch);
+  mixed.precision = PairPrecision::mixed;
+  CHECK_THROWS_WITH(mixed.check(),
+                    "precision = \"mixed\" does not support cutoff_style = \"force_switch\"; leave precision out, or "
+                    "take \"switch_c2\" or \"switch_c4\"");
   CHECK_THROWS_WITH((LennardJonesForce{.cutoff = 2.5, .epsilon = 1.0}.check()),
                     Catch::Contains("is given alone; give both epsilon and sigma, or neither"));
   CHECK_THROWS_WITH((LennardJonesForce{.cutoff = -1, .epsilon = 1.0, .sigma = 1.0}.check()),

@@ -154,7 +154,8 @@ TEST_CASE("switches are the polynomials in r^2 that are written down, in energy 
 
 TEST_CASE("pairs of any potential in lanes are those of 113 bits, for every end of the range", "[pair_force]") {
   const Cutoff style =
-      GENERATE(Cutoff::plain, Cutoff::shifted, Cutoff::shifted_force, Cutoff::switch_c2, Cutoff::switch_c4);
+      GENERATE(Cutoff::plain, Cutoff::shifted, Cutoff::shifted_force, Cutoff::switch_c2, Cutoff::switch_c4,
+               Cutoff::potential_switch, Cutoff::charmm_switch, Cutoff::force_switch);
   for (const SimdLevel level : test::all_levels()) {
     const test::AtLevel at(level);
     CAPTURE(name(level), static_cast<int>(style));
@@ -175,7 +176,8 @@ TEST_CASE("pairs of any potential in lanes are those of 113 bits, for every end 
 
 TEST_CASE("forces of pair potentials are the gradients of their energies", "[pair_force]") {
   const ParticleSystem<double> s = test::liquid(1, 0.6, 1, 0.05);
-  for (const Cutoff style : {Cutoff::shifted, Cutoff::shifted_force, Cutoff::switch_c2, Cutoff::switch_c4}) {
+  for (const Cutoff style : {Cutoff::shifted, Cutoff::shifted_force, Cutoff::switch_c2, Cutoff::switch_c4,
+                             Cutoff::potential_switch, Cutoff::charmm_switch, Cutoff::force_switch}) {
     CAPTURE(static_cast<int>(style));
     CHECK(gradient_error(pair_force(MorsePair{1.7, 4.5, 1.15}, 2.0, style), s) < 1e-12);
     CHECK(gradient_error(pair_force(Buckingham{2500, 0.18, 3.1}, 2.1, style), s) < 1e-12);
@@ -185,7 +187,7 @@ TEST_CASE("forces of pair potentials are the gradients of their energies", "[pai
 
 TEST_CASE("twelve-six written by a user is Lennard-Jones", "[pair_force]") {
   const ParticleSystem<double> s = test::liquid(4, 0.85, 1, 0.1);
-  for (const Cutoff style : {Cutoff::plain, Cutoff::shifted_force, Cutoff::switch_c4}) {
+  for (const Cutoff style : {Cutoff::plain, Cutoff::shifted_force, Cutoff::switch_c4, Cutoff::force_switch}) {
     const Evaluated own = evaluated<double>(pair_force(TwelveSix{}, 2.5, style), s);
     const Evaluated built_in =
         evaluated<double>(LennardJonesForce{.cutoff = 2.5, .cutoff_style = style, .epsilon = 1.0, .sigma = 1.0}, s);

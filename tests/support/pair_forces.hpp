@@ -13,8 +13,9 @@
 
 namespace noether::test {
 
-inline constexpr Cutoff cutoff_styles[] = {Cutoff::plain, Cutoff::shifted, Cutoff::shifted_force, Cutoff::switch_c2,
-                                           Cutoff::switch_c4};
+inline constexpr Cutoff cutoff_styles[] = {Cutoff::plain,         Cutoff::shifted,     Cutoff::shifted_force,
+                                           Cutoff::switch_c2,     Cutoff::switch_c4,   Cutoff::potential_switch,
+                                           Cutoff::charmm_switch, Cutoff::force_switch};
 
 /// The same particles as two kinds of atoms, some pairs left out and some at half their strength.
 inline ParticleSystem<double> with_two_types(ParticleSystem<double> s) {
