@@ -102,7 +102,9 @@ SceneTable particles() {
            "how unlike types mix",
            "",
            {"lorentz_berthelot", "geometric"}},
-          {"special", "list", "1", "[0, 0, 0]", "factors of pair forces one, two and three bonds apart"},
+          {"special", "list", "1", "[0, 0, 0]",
+           "factors of pair forces one, two and three bonds apart, or a table of two such lists, `lennard_jones` and "
+           "`charges`"},
           {"file_units",
            "choice",
            "1",
@@ -186,6 +188,16 @@ SceneTable type() {
                   {"charge", "number", "charge", "", "of a particle"},
                   {"epsilon", "number", "energy", "", "depth of the well of `lennard_jones`; with sigma"},
                   {"sigma", "number", "length", "", "where the energy of `lennard_jones` is 0"}})};
+}
+
+SceneTable special_pair() {
+  return {"[[particles.special_pair]]",
+          "A pair of particles with its own parameters: it is left out of pair forces, and becomes a term `one_four` "
+          "of the force `bonded`, without a cutoff.",
+          fields({{"ids", "list", "1", "", "of the two particles", "[1, 4]"},
+                  {"epsilon", "number", "energy", "0", "depth of the well; with sigma"},
+                  {"sigma", "number", "length", "", "where the energy of Lennard-Jones is 0"},
+                  {"charge_product", "number", "charge^2", "0", "of the two charges"}})};
 }
 
 SceneTable pair() {
@@ -306,8 +318,8 @@ SceneTable named(std::string name, std::string help, std::vector<FieldInfo> keys
 }  // namespace
 
 std::vector<SceneTable> scene_tables(const Parts& parts) {
-  std::vector<SceneTable> all = {top(),  particles(),   body(),  rigid_body(),   site(),      type(),
-                                 pair(), hamiltonian(), force(), charge_field(), constraint()};
+  std::vector<SceneTable> all = {top(),  particles(),    body(),        rigid_body(), site(),         type(),
+                                 pair(), special_pair(), hamiltonian(), force(),      charge_field(), constraint()};
   all.push_back(named("[hamiltonian.neighbors]", "How neighbors of pair forces are found; only `renewal` changes bits.",
                       and_of<NeighborOptions>({})));
   all.push_back(named("[hamiltonian.thermostat]", "Keeps the particles at a temperature, by friction and noise.",

@@ -121,9 +121,10 @@ template <class NextToo> std::vector<std::uint8_t> steps_together(std::size_t co
 }
 
 /// Every particle there is and none twice; every kind there is.
-template <std::size_t size>
+/// @param may_repeat  (term): whether it may have a particle twice
+template <std::size_t size, class MayRepeat>
 void check_terms(const std::vector<BondedTerm<size>>& terms, std::size_t kinds, Index n, const char* one,
-                 const char* section) {
+                 const char* section, const MayRepeat& may_repeat) {
   for (const BondedTerm<size>& term : terms) {
     if (kinds == 0) {
       throw Error(fmt::format("there is {}, but no parameters for its kind; give the parameters of each kind in "
@@ -137,7 +138,7 @@ void check_terms(const std::vector<BondedTerm<size>>& terms, std::size_t kinds, 
     for (std::size_t k = 0; k < size; ++k) {
       const Index i = term.particles[k];
       if (i < 0 || i >= n) throw Error(fmt::format("{} is of particle {}, but there are {}", one, i, n));
-      if (std::count(term.particles.begin(), term.particles.end(), i) > 1) {
+      if (!may_repeat(term) && std::count(term.particles.begin(), term.particles.end(), i) > 1) {
         throw Error(fmt::format("{} has particle {} twice; different ones are expected", one, i));
       }
     }
@@ -153,10 +154,16 @@ BondedTerms::BondedTerms(std::shared_ptr<const Topology> topology, Index n)
       impropers(kinds_of(topology->improper_kinds, known_impropers(), "impropers")),
       origin_(std::move(topology)),
       topology_(origin_->rigid.empty() ? origin_ : std::make_shared<const Topology>(origin_->without_rigid_terms(n))) {
-  check_terms(topology_->bonds, bonds.size(), n, "a bond", "Bond Coeffs");
-  check_terms(topology_->angles, angles.size(), n, "an angle", "Angle Coeffs");
-  check_terms(topology_->dihedrals, dihedrals.size(), n, "a dihedral", "Dihedral Coeffs");
-  check_terms(topology_->impropers, impropers.size(), n, "an improper", "Improper Coeffs");
+  const auto never = [](const auto&) { return false; };
+  check_terms(topology_->bonds, bonds.size(), n, "a bond", "Bond Coeffs", never);
+  check_terms(topology_->angles, angles.size(), n, "an angle", "Angle Coeffs", never);
+  // Of a pair that no three bonds join the ends stand in the middle too.
+  check_terms(topology_->dihedrals, dihedrals.size(), n, "a dihedral", "Dihedral Coeffs", [&](const auto& term) {
+    const auto& [first, second, third, last] = term.particles;
+    return dihedrals[static_cast<std::size_t>(term.type)].potential == DihedralPotential::one_four && first == second &&
+           third == last && first != last;
+  });
+  check_terms(topology_->impropers, impropers.size(), n, "an improper", "Improper Coeffs", never);
   struct Place {
     Index owner;
     std::uint64_t slot;  // and the sign

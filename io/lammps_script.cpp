@@ -211,7 +211,16 @@ StructureOptions LammpsScript::completed(StructureOptions options) const {
   const LammpsCommand *units = find("units"), *atoms = find("atom_style");
   complete_option(options.file_units, units, word(units), "units");
   complete_option(options.atom_style, atoms, word(atoms), "atom_style");
-  if (const auto factors = special()) {
+  if (const LammpsCommand* command = find("special_bonds"); command != nullptr && options.special_charges) {
+    const auto [lennard_jones, charges] = factors_of(*command);
+    if (options.special != lennard_jones || *options.special_charges != charges) {
+      command->fail(
+          fmt::format("special_bonds keeps {} of Lennard-Jones forces and {} of forces of charges, but special says "
+                      "others; take one "
+                      "of them out",
+                      factors_told(lennard_jones), factors_told(charges)));
+    }
+  } else if (const auto factors = special()) {
     if (options.special && *options.special != *factors) {
       find("special_bonds")
           ->fail(fmt::format("special_bonds keeps {}, but special says {}; take one of them out",

@@ -194,6 +194,29 @@ std::size_t frame_of(const StructureOptions& options, std::size_t frames) {
               {.key = "frame"});
 }
 
+namespace {
+
+/// What is left of the two forces between particles three bonds apart, where the options say that they are not scaled
+/// alike; `special` then leaves nothing of such pairs.
+/// @throws Error  at key "special" where particles nearer to each other differ too
+std::optional<LammpsScript::EndFactors> ends_of_scene(const StructureOptions& options, std::array<double, 3>& special) {
+  if (!options.special_charges || *options.special_charges == special) return {};
+  const std::array<double, 3>& charges = *options.special_charges;
+  check_special(charges);
+  if (charges[0] != special[0] || charges[1] != special[1]) {
+    const auto told = [](const std::array<double, 3>& factors) {
+      return fmt::format("[{}, {}, {}]", format_number(factors[0]), format_number(factors[1]),
+                         format_number(factors[2]));
+    };
+    throw Error(fmt::format("special keeps {} of lennard_jones and {} of charges; only the third factor may differ",
+                            told(special), told(charges)),
+                {.key = "special"});
+  }
+  return LammpsScript::EndFactors{std::exchange(special[2], 0), charges[2]};
+}
+
+}  // namespace
+
 ParticleSystem<double> read_structure(const std::filesystem::path& file, const StructureOptions& options) {
   const StructureFormat format = format_of(file);
   if (!options.atom_style.empty() && format != StructureFormat::lammps_data) {
@@ -216,8 +239,9 @@ ParticleSystem<double> read_structure(const std::filesystem::path& file, const S
   const LammpsScript script(options);
   const StructureOptions told = with_units_of_file(text, format, script.completed(options));
   const FileUnits units = file_units_of(format, told);
-  const std::array<double, 3> special = told.special.value_or(std::array<double, 3>{0, 0, 0});
+  std::array<double, 3> special = told.special.value_or(std::array<double, 3>{0, 0, 0});
   check_special(special);
+  const auto scene_ends = ends_of_scene(told, special);
   Structure structure = format == StructureFormat::lammps_data ? read_lammps_data(text, script, units, told)
                         : format == StructureFormat::gro       ? read_gro(text, units, told)
                         : format == StructureFormat::gmsh      ? read_gmsh(text, told)
@@ -227,7 +251,13 @@ ParticleSystem<double> read_structure(const std::filesystem::path& file, const S
          "the style of the structure's pair coefficients is not given: they are taken as epsilon and sigma of lj/cut; "
          "if that is right, write it after the section, 'Pair Coeffs # lj/cut'");
   }
-  const auto ends = script.end_factors();
+  const auto ends = scene_ends ? scene_ends : script.end_factors();
+  if (scene_ends && !structure.end_pairs.empty()) {
+    throw Error(
+        "special keeps other parts of the forces of charges than of others, but the weights of dihedrals in this file "
+        "already say what is left between their ends; take one of them out",
+        {.key = "special"});
+  }
   if (ends && !structure.end_pairs.empty()) {
     text.fail(0,
               "the weights of dihedrals and special_bonds both give the ends of dihedrals a pair force; set the "

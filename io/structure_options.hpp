@@ -26,6 +26,9 @@ struct StructureOptions {
   /// Factors of the pair forces of particles one, two and three bonds apart; empty: those of `special_bonds` in
   /// `coefficients`, or else 0.
   std::optional<std::array<double, 3>> special = {};
+  /// Those of the forces of charges, where they are others: the third alone may differ, and both forces of particles
+  /// three bonds apart are then terms of the force `bonded`, without a cutoff.
+  std::optional<std::array<double, 3>> special_charges = {};
   std::optional<Mixing> mixing = {};       ///< default: geometric for LAMMPS data, as there, and else lorentz_berthelot
   std::vector<TypeParameters> types = {};  ///< given in addition to those of the file, or instead
   std::vector<PairParameters> pairs = {};

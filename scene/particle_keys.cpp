@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <map>
 #include <memory>
 #include <set>
 #include <unordered_map>
@@ -114,21 +115,133 @@ std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective) {
               fmt::format("unknown mixing '{}'{}", text, did_you_mean(text, {"lorentz_berthelot", "geometric"})));
 }
 
-std::array<double, 3> read_special(TableReader& reader, SceneValue& effective) {
-  if (const SceneValue* value = reader.find("special")) {
-    const auto* factors = value->get<SceneValue::Array>();
-    if (factors == nullptr || factors->size() != 3) {
-      reader.fail("special",
-                  fmt::format("special = {} is not a list of three numbers; the factors of the forces between "
-                              "particles one, two and three bonds apart are expected: [s12, s13, s14]",
-                              to_text(*value)));
+namespace {
+
+std::array<double, 3> three_factors(TableReader& reader, const std::string& key) {
+  const SceneValue* value = reader.find(key);
+  const auto* factors = value != nullptr ? value->get<SceneValue::Array>() : nullptr;
+  if (value != nullptr && (factors == nullptr || factors->size() != 3)) {
+    reader.fail(key, fmt::format("{} = {} is not a list of three numbers; the factors of the forces between "
+                                 "particles one, two and three bonds apart are expected: [s12, s13, s14]",
+                                 key, to_text(*value)));
+  }
+  return reader.vector(key, "1").value_or(std::array<double, 3>{0, 0, 0});
+}
+
+SceneValue list_of(const std::array<double, 3>& factors, int line) {
+  SceneValue::Array list;
+  for (const double factor : factors) list.push_back(SceneValue::of(factor));
+  return SceneValue::of(std::move(list), line);
+}
+
+}  // namespace
+
+SpecialFactors read_special(TableReader& reader, SceneValue& effective) {
+  const SceneValue* value = reader.find("special");
+  if (value == nullptr || value->get<SceneValue::Table>() == nullptr) {
+    const std::array<double, 3> special = three_factors(reader, "special");
+    effective.put("special", list_of(special, reader.line("special")));
+    return {special};
+  }
+  TableReader table(reader.context(), *value, "special", "particles.special");
+  table.expect_only({"lennard_jones", "charges"});
+  for (const char* key : {"lennard_jones", "charges"}) {
+    if (!table.has(key)) {
+      table.fail(value, key,
+                 fmt::format("special has no {}; give lennard_jones and charges, each as [s12, s13, s14]", key));
     }
   }
-  const auto special = reader.vector("special", "1").value_or(std::array<double, 3>{0, 0, 0});
-  SceneValue::Array list;
-  for (const double factor : special) list.push_back(SceneValue::of(factor));
-  effective.put("special", SceneValue::of(std::move(list), reader.line("special")));
-  return special;
+  effective.put("special", *value);
+  return {three_factors(table, "lennard_jones"), three_factors(table, "charges")};
+}
+
+namespace {
+
+/// The particle of each id.
+std::unordered_map<std::int64_t, Index> particles_by_id(const ParticleSystem<double>& s) {
+  std::unordered_map<std::int64_t, Index> index;
+  for (Index i = 0; i < s.size(); ++i) index.emplace(s.ids()[static_cast<std::size_t>(i)], i);
+  return index;
+}
+
+/// Two ids as the particles that have them, the smaller index first; a message where they are none.
+/// @param refuse  (why)
+template <class Refuse>
+Topology::Pair pair_of_ids(const SceneValue& value, const std::unordered_map<std::int64_t, Index>& index,
+                           const Refuse& refuse) {
+  const auto* ids = value.get<SceneValue::Array>();
+  if (ids == nullptr || ids->size() != 2) refuse("; two ids are expected, such as [1, 5]");
+  std::array<Index, 2> pair{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto* id = (*ids)[k].get<std::int64_t>();
+    if (id == nullptr) refuse("; two ids are expected, such as [1, 5]");
+    const auto found = index.find(*id);
+    if (found == index.end()) refuse(fmt::format(", but there is no particle with id {}", *id));
+    pair[k] = found->second;
+  }
+  if (pair[0] == pair[1]) refuse(", which is the same particle twice; two different ids are expected");
+  return std::minmax(pair[0], pair[1]);
+}
+
+}  // namespace
+
+void read_special_pairs(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective) {
+  const auto tables = tables_and_keep(reader, "special_pair", effective);
+  if (tables.empty()) return;
+  const auto index = particles_by_id(s);
+  std::map<Topology::Pair, std::array<double, 3>> pairs;
+  for (const SceneValue* one : tables) {
+    TableReader table(reader.context(), *one, "[[particles.special_pair]]",
+                      fmt::format("particles.special_pair.{}", pairs.size()));
+    table.expect_only({"ids", "epsilon", "sigma", "charge_product"});
+    const SceneValue* ids = table.find("ids");
+    if (ids == nullptr) {
+      table.fail(nullptr, "ids", "this [[particles.special_pair]] has no ids; give those of its two particles");
+    }
+    const auto refuse = [&](const std::string& why) {
+      table.fail("ids", fmt::format("ids = {}{}", to_text(*ids), why));
+    };
+    const Topology::Pair pair = pair_of_ids(*ids, index, refuse);
+    const auto epsilon = table.quantity("epsilon", "energy"), sigma = table.quantity("sigma", "length");
+    const auto product = table.quantity("charge_product", "charge^2");
+    if (epsilon.has_value() != sigma.has_value()) {
+      table.fail(
+          epsilon ? "epsilon" : "sigma",
+          fmt::format("{} is given alone; give both epsilon and sigma, or neither", epsilon ? "epsilon" : "sigma"));
+    }
+    if (epsilon && !(*epsilon >= 0)) {
+      table.fail("epsilon", fmt::format("epsilon = {} is not a valid depth; 0 or more is expected",
+                                        to_text(*table.find("epsilon"))));
+    }
+    if (sigma && !(*sigma > 0)) {
+      table.fail("sigma", fmt::format("sigma = {} is not a valid length; a length above 0 is expected",
+                                      to_text(*table.find("sigma"))));
+    }
+    if (!epsilon && !product) {
+      table.fail(nullptr, "epsilon",
+                 "this [[particles.special_pair]] has neither epsilon and sigma nor a charge_product; "
+                 "give some of them, or list the pair in exclusions");
+    }
+    const std::array<double, 3> own = {epsilon.value_or(0), sigma.value_or(0),
+                                       s.units().coulomb_constant * product.value_or(0)};
+    if (!pairs.emplace(pair, own).second) refuse(", a pair that is already listed; take one out");
+  }
+  Topology topology = s.topology() != nullptr ? *s.topology() : Topology{};
+  std::vector<Topology::Pair> all;
+  for (const auto& [pair, own] : pairs) all.push_back(pair);
+  topology.exclude(all);
+  std::erase_if(topology.dihedrals, [&](const BondedTerm<4>& term) {
+    const auto [first, last] = std::minmax(term.particles.front(), term.particles.back());
+    return topology.dihedral_kinds[static_cast<std::size_t>(term.type)].potential == "one_four" &&
+           pairs.contains({first, last});
+  });
+  std::map<std::array<double, 3>, int> known;
+  for (const auto& [pair, own] : pairs) {
+    const auto [at, fresh] = known.try_emplace(own, static_cast<int>(topology.dihedral_kinds.size()));
+    if (fresh) topology.dihedral_kinds.push_back({"one_four", {own.begin(), own.end()}});
+    topology.dihedrals.push_back({{pair.first, pair.first, pair.second, pair.second}, at->second});
+  }
+  s.set_topology(std::make_shared<const Topology>(std::move(topology)));
 }
 
 void read_exclusions(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective) {
@@ -141,26 +254,14 @@ void read_exclusions(TableReader& reader, ParticleSystem<double>& s, SceneValue&
         fmt::format("exclusions = {} is not a list of pairs; pairs of ids are expected, such as [[1, 5], [2, 7]]",
                     to_text(*value)));
   }
-  std::unordered_map<std::int64_t, Index> index;
-  for (Index i = 0; i < s.size(); ++i) index.emplace(s.ids()[static_cast<std::size_t>(i)], i);
+  const auto index = particles_by_id(s);
   std::set<Topology::Pair> pairs;
   for (const SceneValue& one : *list) {
     const auto refuse = [&](const std::string& why) {
       reader.fail(one.line != 0 ? &one : value, "exclusions",
                   fmt::format("exclusions contains {}{}", to_text(one), why));
     };
-    const auto* ids = one.get<SceneValue::Array>();
-    if (ids == nullptr || ids->size() != 2) refuse("; two ids are expected, such as [1, 5]");
-    std::array<Index, 2> pair{};
-    for (std::size_t k = 0; k < 2; ++k) {
-      const auto* id = (*ids)[k].get<std::int64_t>();
-      if (id == nullptr) refuse("; two ids are expected, such as [1, 5]");
-      const auto found = index.find(*id);
-      if (found == index.end()) refuse(fmt::format(", but there is no particle with id {}", *id));
-      pair[k] = found->second;
-    }
-    if (pair[0] == pair[1]) refuse(", which is the same particle twice; two different ids are expected");
-    if (!pairs.insert(std::minmax(pair[0], pair[1])).second) refuse(", a pair that is already listed; take one out");
+    if (!pairs.insert(pair_of_ids(one, index, refuse)).second) refuse(", a pair that is already listed; take one out");
   }
   Topology topology = s.topology() != nullptr ? *s.topology() : Topology{};
   topology.exclude({pairs.begin(), pairs.end()});

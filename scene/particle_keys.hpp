@@ -37,8 +37,19 @@ std::string no_such_frame(const std::string& frame, bool has_frames);
 /// `mixing`; empty where the scene says nothing. @throws SceneError
 std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective);
 
-/// `special = [s12, s13, s14]`. @throws SceneError
-std::array<double, 3> read_special(TableReader& reader, SceneValue& effective);
+/// What is left of pair forces by the bonds between two particles.
+struct SpecialFactors {
+  std::array<double, 3> pairs{};                      ///< of all pair forces, or of all but those of charges
+  std::optional<std::array<double, 3>> charges = {};  ///< of those of charges, where the scene says them apart
+};
+
+/// `special = [s12, s13, s14]`, or two such lists, `special = {lennard_jones = [...], charges = [...]}`.
+/// @throws SceneError
+SpecialFactors read_special(TableReader& reader, SceneValue& effective);
+
+/// `[[particles.special_pair]]`: pairs, by their ids, with parameters of their own: each is taken out of the pair
+/// forces and becomes a term `one_four` of the force `bonded`. @throws SceneError
+void read_special_pairs(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective);
 
 /// `exclusions = [[1, 5], [2, 7]]`: takes away the pair forces of particles of these ids. @throws SceneError
 void read_exclusions(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective);

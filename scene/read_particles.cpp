@@ -127,13 +127,14 @@ ParticleSystem<double> from_bodies(TableReader& reader, const std::filesystem::p
                                    std::vector<std::string>& warnings) {
   const bool file = reader.has("bodies"), frame = are_of_a_frame(reader, folder);
   if (frame && !reader.has("body") && !reader.has("rigid_body")) {  // so nobody has a passage at a date
-    reader.expect_only({"bodies", "bodies_sha256", "elements", "frame", "box", "exclusions", "molecules"});
+    reader.expect_only(
+        {"bodies", "bodies_sha256", "elements", "frame", "box", "exclusions", "special_pair", "molecules"});
   } else if (frame || file) {
-    reader.expect_only(
-        {"bodies", "bodies_sha256", "epoch", "elements", "body", "rigid_body", "frame", "box", "exclusions"});
+    reader.expect_only({"bodies", "bodies_sha256", "epoch", "elements", "body", "rigid_body", "frame", "box",
+                        "exclusions", "special_pair"});
   } else {
-    reader.expect_only(
-        {"body", "rigid_body", "epoch", "elements", "frame", "box", "type", "pair", "mixing", "exclusions"});
+    reader.expect_only({"body", "rigid_body", "epoch", "elements", "frame", "box", "type", "pair", "mixing",
+                        "exclusions", "special_pair"});
   }
   const auto points = tables_of(reader, "body"), rigid = tables_of(reader, "rigid_body");
   const io::ElementsAbout elements = read_elements_about(reader, effective);
@@ -230,8 +231,11 @@ void read_molecules(TableReader& reader, ParticleSystem<double>& s, SceneValue& 
   if (text != "rigid") {
     reader.fail("molecules", fmt::format("unknown molecules '{}'{}", text, did_you_mean(text, {"rigid"})));
   }
-  if (reader.has("exclusions")) {
-    reader.fail("exclusions", "exclusions name atoms, which rigid molecules no longer have; take exclusions out");
+  for (const std::string key : {"exclusions", "special_pair"}) {
+    if (reader.has(key)) {
+      reader.fail(key, fmt::format("{} name atoms, which rigid molecules no longer have; take {} out",
+                                   key == "exclusions" ? key : "special pairs", key));
+    }
   }
   if (s.bodies() != nullptr) {
     reader.fail("molecules",
@@ -271,11 +275,30 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
                                       std::vector<std::string>& warnings) {
   TableReader reader(context, table, "[particles]", "particles");
   if (!is_built(reader)) {
-    reader.expect_only(
-        {"bodies",           "bodies_sha256", "epoch", "elements",    "body", "rigid_body",   "structure",
-         "structure_sha256", "type",          "pair",  "mixing",      "box",  "special",      "exclusions",
-         "file_units",       "atom_style",    "frame", "temperature", "seed", "coefficients", "coefficients_sha256",
-         "molecules",        "density"});
+    reader.expect_only({"bodies",
+                        "bodies_sha256",
+                        "epoch",
+                        "elements",
+                        "body",
+                        "rigid_body",
+                        "structure",
+                        "structure_sha256",
+                        "type",
+                        "pair",
+                        "mixing",
+                        "box",
+                        "special",
+                        "exclusions",
+                        "file_units",
+                        "atom_style",
+                        "frame",
+                        "temperature",
+                        "seed",
+                        "coefficients",
+                        "coefficients_sha256",
+                        "molecules",
+                        "density",
+                        "special_pair"});
   }
   check_sources(reader);
   if (is_built(reader)) {
@@ -294,6 +317,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
   }
   for (const ColumnInfo& column : context.columns) s.add_column(column);
   read_exclusions(own, s, effective);
+  read_special_pairs(own, s, effective);
   read_frame(own, s, !reader.has("structure") && are_of_a_frame(reader, folder), effective);
   return s;
 }

@@ -87,8 +87,8 @@ std::map<std::string, double> read_densities(TableReader& reader, SceneValue& ef
 ParticleSystem<double> read_structure_particles(TableReader& reader, const std::filesystem::path& folder,
                                                 SceneValue& effective, std::vector<std::string>& notes) {
   reader.expect_only({"structure", "structure_sha256", "file_units", "special", "exclusions", "atom_style", "mixing",
-                      "box", "type", "pair", "temperature", "seed", "frame", "coefficients", "coefficients_sha256",
-                      "molecules", "density"});
+                      "box", "type", "pair", "special_pair", "temperature", "seed", "frame", "coefficients",
+                      "coefficients_sha256", "molecules", "density"});
   io::StructureOptions options;
   options.units = reader.context().units;
   options.notes = &notes;
@@ -109,7 +109,11 @@ ParticleSystem<double> read_structure_particles(TableReader& reader, const std::
   options.densities = read_densities(reader, keys);
   options.coefficients = read_coefficients(reader, folder, keys);
   // What the scene does not say, the coefficients may.
-  if (reader.has("special") || options.coefficients.empty()) options.special = read_special(reader, keys);
+  if (reader.has("special") || options.coefficients.empty()) {
+    const SpecialFactors special = read_special(reader, keys);
+    options.special = special.pairs;
+    options.special_charges = special.charges;
+  }
   options.mixing = read_mixing(reader, keys);
   options.box = read_box(reader, keys);
   options.types = read_types(reader, keys);
