@@ -174,6 +174,22 @@ void add_systems(Parts& parts) {
   parts.add_system<LorentzPairs>();
 }
 
+void add_constraints(Parts& parts) {
+  parts.add_constraint<Distance>();
+  parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read, Drawn::chain});
+  parts.add_constraint<Angle>();
+  parts.add_structure_constraint<RigidBonds>();
+  parts.add_structure_constraint<RigidHydrogenBonds>();
+  parts.add_structure_constraint<RigidBondsAndAngles>();
+  parts.add_structure_constraint<RigidMolecules>();
+  parts.add_constraint<Fixed>();
+  parts.add_constraint<OnSphere>();
+  parts.add_constraint<OnPlane>();
+  parts.add_constraint<OnCylinder>();
+  parts.add_constraint<OnCircle>();
+  parts.add_constraint<OnLine>();
+}
+
 }  // namespace
 
 Parts standard_parts() {
@@ -211,19 +227,7 @@ Parts standard_parts() {
   parts.add_force<LinearDrag>();
   parts.add_force<Tides>();
   add_fields(parts);
-  parts.add_constraint<Distance>();
-  parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read, Drawn::chain});
-  parts.add_constraint<Angle>();
-  parts.add_structure_constraint<RigidBonds>();
-  parts.add_structure_constraint<RigidHydrogenBonds>();
-  parts.add_structure_constraint<RigidBondsAndAngles>();
-  parts.add_structure_constraint<RigidMolecules>();
-  parts.add_constraint<Fixed>();
-  parts.add_constraint<OnSphere>();
-  parts.add_constraint<OnPlane>();
-  parts.add_constraint<OnCylinder>();
-  parts.add_constraint<OnCircle>();
-  parts.add_constraint<OnLine>();
+  add_constraints(parts);
   add_systems(parts);
   parts.add_monitor<Energy>();
   parts.add_monitor<Momentum>();
