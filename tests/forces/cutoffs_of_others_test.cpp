@@ -19,10 +19,10 @@ using test::evaluated;
 using test::Evaluated;
 
 /// Argon as OpenMM was given it (tests/data/openmm/make.py), in nm and kJ/mol.
-constexpr double sigma = 0.34, epsilon = 0.996, from = 0.9, to = 1.1;
+constexpr double sigma = 0.34, epsilon = 0.996, switch_begin = 0.9, switch_end = 1.1;
 
 LennardJonesForce argon(Cutoff style) {
-  return {.cutoff = to, .cutoff_style = style, .switch_from = from, .epsilon = epsilon, .sigma = sigma};
+  return {.cutoff = switch_end, .cutoff_style = style, .switch_from = switch_begin, .epsilon = epsilon, .sigma = sigma};
 }
 
 struct Found {
@@ -51,15 +51,16 @@ Quad bare(const Quad& r) {
 /// OpenMM's manual, "Lennard-Jones interaction", S = 1 - 6 x^5 + 15 x^4 - 10 x^3; GROMACS's potential switch is the
 /// same.
 Quad switched_by_openmm(const Quad& r) {
-  if (r <= Quad(from)) return bare(r);
-  const Quad x = (r - Quad(from)) / (Quad(to) - Quad(from));
+  if (r <= Quad(switch_begin)) return bare(r);
+  const Quad x = (r - Quad(switch_begin)) / (Quad(switch_end) - Quad(switch_begin));
   return bare(r) * (Quad(1) - Quad(6) * x * x * x * x * x + Quad(15) * x * x * x * x - Quad(10) * x * x * x);
 }
 
 /// LAMMPS's manual of pair_style lj/charmm: S = (rc^2 - r^2)^2 (rc^2 + 2 r^2 - 3 rs^2) / (rc^2 - rs^2)^3.
 Quad switched_by_charmm(const Quad& r) {
-  if (r <= Quad(from)) return bare(r);
-  const Quad c2 = Quad(to) * Quad(to), s2 = Quad(from) * Quad(from), r2 = r * r, w = c2 - s2;
+  if (r <= Quad(switch_begin)) return bare(r);
+  const Quad c2 = Quad(switch_end) * Quad(switch_end), s2 = Quad(switch_begin) * Quad(switch_begin), r2 = r * r,
+             w = c2 - s2;
   return bare(r) * (c2 - r2) * (c2 - r2) * (c2 + Quad(2) * r2 - Quad(3) * s2) / (w * w * w);
 }
 
@@ -71,7 +72,7 @@ Quad power_by_gromacs(int a, const Quad& r) {
     for (int k = 0; k < n; ++k) product *= x;
     return product;
   };
-  const Quad alpha(a), rc(to), r1(from), w = rc - r1;
+  const Quad alpha(a), rc(switch_end), r1(switch_begin), w = rc - r1;
   const Quad A = -alpha * ((alpha + Quad(4)) * rc - (alpha + Quad(1)) * r1) / (power(rc, a + 2) * w * w);
   const Quad B = alpha * ((alpha + Quad(3)) * rc - (alpha + Quad(1)) * r1) / (power(rc, a + 2) * w * w * w);
   const Quad C = Quad(1) / power(rc, a) - A / Quad(3) * power(w, 3) - B / Quad(4) * power(w, 4);
@@ -135,7 +136,8 @@ TEST_CASE("pairs end as the manuals of OpenMM, GROMACS, CHARMM and LAMMPS print 
       CAPTURE(static_cast<int>(style));
       const Found expected = closed(energy, r);
       const Found exact = pair_at<Quad>(r, argon(style)), lanes = pair_at<double>(r, argon(style));
-      const Found own = pair_at<double>(r, PairForce<LennardJonesPair>{{epsilon, sigma}, to, style, from});
+      const Found own =
+          pair_at<double>(r, PairForce<LennardJonesPair>{{epsilon, sigma}, switch_end, style, switch_begin});
       // The shift of a force switch, 0.004, is a double.
       CHECK(std::abs(exact.energy - expected.energy) < 1e-13 * std::abs(expected.energy) + 0.004 * 0x1p-52);
       CHECK(std::abs(exact.force - expected.force) < 1e-13 * std::abs(expected.force));
@@ -148,7 +150,8 @@ TEST_CASE("pairs end as the manuals of OpenMM, GROMACS, CHARMM and LAMMPS print 
     check(Cutoff::potential_switch, switched_by_openmm);
     check(Cutoff::charmm_switch, switched_by_charmm);
     check(Cutoff::force_switch, forces_switched_by_gromacs);
-    check(Cutoff::shifted, [](const Quad& x) { return bare(x) - bare(Quad(to)); });  // GROMACS's potential shift
+    check(Cutoff::shifted,
+          [](const Quad& x) { return bare(x) - bare(Quad(switch_end)); });  // GROMACS's potential shift
   }
 }
 
@@ -177,19 +180,19 @@ TEST_CASE("the tail of a switch has what the switch takes away, by energy and vi
   };
   const auto check = [&](Cutoff style, const auto& energy, double begin) {
     CAPTURE(static_cast<int>(style), begin);
-    const Quad inside = integral([&](const Quad& r) { return (bare(r) - energy(r)) * r * r; }, begin, to);
-    const double expected = pairs * static_cast<double>(beyond(Quad(to)) + inside);
+    const Quad inside = integral([&](const Quad& r) { return (bare(r) - energy(r)) * r * r; }, begin, switch_end);
+    const double expected = pairs * static_cast<double>(beyond(Quad(switch_end)) + inside);
     LennardJonesForce force = argon(style);
     force.switch_from = begin;
     const Found found = tail_of(force, s);
     CHECK(std::abs(found.energy - expected) < 1e-11 * std::abs(expected));
     CHECK(std::abs(found.force - expected) < 1e-11 * std::abs(expected));  // W = 3 E, without a jump at the cutoff
   };
-  check(Cutoff::potential_switch, switched_by_openmm, from);
-  check(Cutoff::charmm_switch, switched_by_charmm, from);
+  check(Cutoff::potential_switch, switched_by_openmm, switch_begin);
+  check(Cutoff::charmm_switch, switched_by_charmm, switch_begin);
   for (const double begin : {0.3, 0.8, 1.09}) {
     const auto t_of = [begin](const Quad& r) {
-      return (r * r - Quad(begin) * Quad(begin)) / (Quad(to) * Quad(to) - Quad(begin) * Quad(begin));
+      return (r * r - Quad(begin) * Quad(begin)) / (Quad(switch_end) * Quad(switch_end) - Quad(begin) * Quad(begin));
     };
     check(
         Cutoff::switch_c2,
@@ -201,8 +204,10 @@ TEST_CASE("the tail of a switch has what the switch takes away, by energy and vi
   }
   // OpenMM's own correction, of a plain cutoff and of a switched one (make.py): printed in doubles as a difference;
   // that of the switch is 1.5e-10 of itself off the integral above.
-  CHECK(std::abs(tail_of({.cutoff = to, .cutoff_style = Cutoff::plain, .epsilon = epsilon, .sigma = sigma}, s).energy +
-                 32.6754000780955) < 1e-10);
+  CHECK(
+      std::abs(
+          tail_of({.cutoff = switch_end, .cutoff_style = Cutoff::plain, .epsilon = epsilon, .sigma = sigma}, s).energy +
+          32.6754000780955) < 1e-10);
   CHECK(std::abs(tail_of(argon(Cutoff::potential_switch), s).energy + 43.8557286783441) < 1e-8);
 }
 
