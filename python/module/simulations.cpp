@@ -99,6 +99,9 @@ class HeldSimulation {
     sim_.attach(AnyMonitor<double>(Recorder{records_}), {.steps = std::int64_t{1} << 62});
   }
 
+  HeldSimulation(const HeldSimulation&) = delete;
+  HeldSimulation& operator=(const HeldSimulation&) = delete;
+
   std::vector<std::shared_ptr<Callable>>& functions() { return functions_; }
   Simulation<double>& sim() { return sim_; }
   const Records& records() const { return *records_; }

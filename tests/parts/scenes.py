@@ -249,7 +249,7 @@ FORCES = {
     # Of one sign: two that attract each other would nearly meet.
     "coulomb": Case(CHARGES.replace("charge = -1.0", "charge = 1.0"), forces("type = 'coulomb'", SPRING)),
     "ewald": salt(LENNARD_JONES, "type = 'ewald'; cutoff = 2.5"),
-    "particle_mesh_ewald": salt(LENNARD_JONES, "type = 'particle_mesh_ewald'; cutoff = 2.5"),
+    "particle_mesh_ewald": salt(LENNARD_JONES, "type = 'particle_mesh_ewald'; cutoff = 3.0; relative_error = 1e-4; order = 8"),
     "harmonic_bond": Case(PAIR, forces("type = 'harmonic_bond'; chain = ['a', 'b']; k = 10; length = 0.7")),
     "tether": Case(PAIR, forces("type = 'tether'; bodies = 'all'; k = 10; length = 0.2; point = [0.0, 0.0, 0.3]")),
     "bonded": Case(CHAIN, forces("type = 'bonded'"), step=0.01, files={"chain.data": CHAIN_FILE}),
