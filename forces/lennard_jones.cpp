@@ -130,11 +130,10 @@ void LennardJonesForce::check() const {
                  "of near pairs");
   }
   if (precision == PairPrecision::mixed && is_of_other_programs(cutoff_style)) {
-    throw Error(
-        fmt::format("precision = \"mixed\" does not support cutoff_style = \"{}\"; leave precision out, or take "
-                    "\"switch_c2\" or \"switch_c4\"",
-                    name_of_style(cutoff_style)),
-        {.key = "precision"});
+    refuse_field("precision", "\"mixed\"",
+                 fmt::format("does not support cutoff_style = \"{}\"; leave precision out, or take \"switch_c2\" or "
+                             "\"switch_c4\"",
+                             name_of_style(cutoff_style)));
   }
 }
 

@@ -400,7 +400,7 @@ SYSTEMS = {
     "double_pendulum": action("type = 'double_pendulum'; start = [0.5, 0.2, 0.0, 0.0]"),
     "polar_kepler": action("type = 'polar_kepler'"),
     "weber": action("type = 'weber'"),
-    "darwin": dataclasses.replace(action("type = 'darwin'"), step=0.02),  # in 113 bits 200 steps of 0.05 take a minute
+    "darwin": dataclasses.replace(action("type = 'darwin'"), step=0.005),  # in 113 bits ten units of time take a minute
     "lorentz_pairs": action("type = 'lorentz_pairs'"),
 }
 
