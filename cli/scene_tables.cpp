@@ -190,6 +190,15 @@ SceneTable type() {
                   {"sigma", "number", "length", "", "where the energy of `lennard_jones` is 0"}})};
 }
 
+SceneTable special() {
+  return {
+      "[particles.special]",
+      "Factors of pair forces one, two and three bonds apart, where charges have others than Lennard-Jones: 1/2 and "
+      "1/1.2 of Amber. Where they are the same, a list alone does.",
+      fields({{"lennard_jones", "list", "1", "", "of all forces but those of charges", "[0, 0, 0.5]"},
+              {"charges", "list", "1", "", "of forces between charges", "[0, 0, 0.8333333333333334]"}})};
+}
+
 SceneTable special_pair() {
   return {"[[particles.special_pair]]",
           "A pair of particles with its own parameters: it is left out of pair forces, and becomes a term `one_four` "
@@ -318,8 +327,9 @@ SceneTable named(std::string name, std::string help, std::vector<FieldInfo> keys
 }  // namespace
 
 std::vector<SceneTable> scene_tables(const Parts& parts) {
-  std::vector<SceneTable> all = {top(),  particles(),    body(),        rigid_body(), site(),         type(),
-                                 pair(), special_pair(), hamiltonian(), force(),      charge_field(), constraint()};
+  std::vector<SceneTable> all = {top(),   particles(),    body(),      rigid_body(),   site(),
+                                 type(),  pair(),         special(),   special_pair(), hamiltonian(),
+                                 force(), charge_field(), constraint()};
   all.push_back(named("[hamiltonian.neighbors]", "How neighbors of pair forces are found; only `renewal` changes bits.",
                       and_of<NeighborOptions>({})));
   all.push_back(named("[hamiltonian.thermostat]", "Keeps the particles at a temperature, by friction and noise.",
