@@ -90,8 +90,8 @@ MomentumShares shares_of_charges(const ChargeLists& of, const Vector<double>& q,
         if (j == i) return 0.0;
         const double coupling =
             of.k * of.charges[static_cast<std::size_t>(i)] * of.charges[static_cast<std::size_t>(j)];
-        const Vec3<double> apart = of_charge(q, i) - of_charge(q, j);
-        return potential_momentum(place_of_pair(apart), coupling, of.c, of_charge(v, j))[d];
+        const Vec3<double> between = of_charge(q, i) - of_charge(q, j);
+        return potential_momentum(place_of_pair(between), coupling, of.c, of_charge(v, j))[d];
       });
     }
     return sum;
