@@ -67,7 +67,7 @@ constexpr double stiffness = 1.5, charge = 0.75, thermal = 2;
 constexpr Index springs = 6;
 
 /// Charges that springs of no length hold together, in a bath: each component of their moment is Gaussian, of variance
-/// charge^2 thermal / stiffness, and the splitting BAOAB samples it exactly at any step.
+/// charge^2 kT / stiffness, and the splitting BAOAB samples it exactly at any step.
 Simulation<double> dipoles_in_a_bath(std::int64_t seed) {
   ParticleSystem<double> s;
   s.set_box(Box::periodic({30, 40, 50}));
@@ -142,7 +142,7 @@ TEST_CASE("a moment of 1 e nm is 48.0320471 debyes", "[dipole]") {
 
 TEST_CASE("the dielectric constant of springs is the one of their polarizability, within bars that are right",
           "[dipole]") {
-  // <M^2> - <M>^2 = 3 n q^2 thermal/k, so epsilon = 1 + 4 pi n q^2/(k V) in units where C = 1, at any temperature.
+  // <M^2> - <M>^2 = 3 n q^2 kT/k, so epsilon = 1 + 4 pi n q^2/(k V) in units where C = 1, at any temperature.
   const double exact = 1 + 4 * std::numbers::pi * static_cast<double>(springs) * charge * charge / stiffness / 60000;
   constexpr int runs = 24;
   double squares = 0, mean = 0, worst = 0;
