@@ -13,6 +13,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -40,7 +41,7 @@ INTRODUCTION = """\
 Written by `python3 tests/parts/every_part.py build/cli/noether . --write`; the test `parts.every_part` walks the parts
 that `noether list` names again and fails where one differs from this page. Each has a short scene in
 `tests/parts/scenes.py`. A number stands where the program refuses, with exit code 2, and leads to its message below,
-with NAME in the place of the part's own.
+with NAME in the place of the part's own, and N in the place of seconds that it measured.
 
 - **run**: the run itself, and `explain`, `info`, `verify`, `convert`, `plot` and `view` of it.
 - **threads, cadences**: the same bits, by digest, with two threads, and with other cadences of whatever looks on.
@@ -203,7 +204,8 @@ class Walk:
             expect(row["outcome"] == "completed", f"`compare` runs {row['method']} to {row['outcome']}")
         truth = found["truth"]
         if not truth["name"].endswith("in quad"):
-            return truth["name"], truth["note"].split("; errors are")[0]
+            reason = truth["note"].split("; errors are")[0]
+            return truth["name"], re.sub(r"\b\d+ s\b", "N s", reason)
         for what in ("position_error_max", "energy_error_max"):
             errors = [row[what] for row in found["rows"] if row[what] is not None]
             expect(not errors or min(errors) < 0.1,
