@@ -41,6 +41,11 @@ def _toml(value):
     return repr(value)
 
 
+def _several(values):
+    """A list; one text is a list of one."""
+    return [values] if isinstance(values, str) else list(values)
+
+
 def _sets(changes, until):
     """Changes of a scene as the program takes them."""
     all_sets = []
@@ -64,10 +69,10 @@ class Scene:
     """
 
     def __init__(self, source, *, set=None, until=None, functions=()):
+        changed = []
         if isinstance(source, Scene):
             functions = tuple(source._functions) + tuple(functions)
-            set = {**source._changes, **(set or {})} if isinstance(set or {}, dict) else set
-            source = source._source
+            changed, source = source._set_lines, source._source
         elif not isinstance(source, dict) and hasattr(source, "tree"):
             functions = tuple(getattr(source, "_functions", ())) + tuple(functions)
             source = source.tree()
@@ -76,8 +81,7 @@ class Scene:
             if not os.path.exists(source) and source in examples():
                 source = example(source)
         self._source, self._functions = source, list(functions)
-        self._changes, self._until = dict(set) if isinstance(set, dict) else {}, until
-        self._set_lines = _sets(set, until)
+        self._set_lines = [*changed, *_sets(set, until)]
         self._held = self._read()
 
     def _read(self):
@@ -119,7 +123,8 @@ class Scene:
     def compare(self, *, methods=(), steps=(), tolerances=(), until=None, repeats=3, budget=10.0, truth_budget=120.0,
                 out=None, progress=None):
         """Error against run time, method by method: see `nt.compare`."""
-        told = self._held.compare(list(methods), [str(quantities.with_units(one, "time", self.units)) for one in steps],
+        told = self._held.compare(_several(methods),
+                                  [str(quantities.with_units(one, "time", self.units)) for one in _several(steps)],
                                   [float(one) for one in tolerances],
                                   None if until is None else str(quantities.with_units(until, "time", self.units)),
                                   int(repeats), float(budget), float(truth_budget), "" if out is None else os.fspath(out),
@@ -130,11 +135,11 @@ class Scene:
         """The cheapest method and step that hold an error: see `nt.advise`."""
         if metric not in (None, "position", "energy"):
             raise ValueError(f"metric = {metric!r}; 'position' or 'energy' is expected")
-        return reports.Advice(*self._held.advise(float(error), metric, list(methods), float(budget), progress))
+        return reports.Advice(*self._held.advise(float(error), metric, _several(methods), float(budget), progress))
 
     def stability(self, *, methods=(), steps=100_000, budget=20.0, progress=None):
         """The largest stable step of each method: see `nt.stability`."""
-        return reports.Stability(*self._held.stability(list(methods), int(steps), float(budget), progress))
+        return reports.Stability(*self._held.stability(_several(methods), int(steps), float(budget), progress))
 
     def evaluate(self, *, check=False):
         """Energy by term, virial and forces of the start: a dict; with `check`, forces against differences too."""

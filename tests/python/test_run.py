@@ -56,6 +56,15 @@ def test_changes_and_the_end_are_those_of_the_command_line():
     assert nt.run("figure_eight", until=1.581478495, out="until").step == 100
 
 
+@pytest.mark.parametrize("changes", [{"integrator.method": "gauss_8"}, ["integrator.method=gauss_8"]])
+def test_a_scene_of_a_scene_keeps_its_changes_and_its_end(changes):
+    first = nt.Scene("figure_eight", set=changes, until=3)
+    second = nt.Scene(first, set=["integrator.rtol=1e-9"])
+    assert second.tree["integrator"]["method"] == "gauss_8" and second.tree["integrator"]["rtol"] == 1e-9
+    assert second.tree["integrator"]["until"] == first.tree["integrator"]["until"]
+    assert nt.Scene(first, until=2).tree["integrator"]["until"] != first.tree["integrator"]["until"]
+
+
 def test_what_a_report_has():
     report = nt.run("figure_eight", out="out")
     assert report.outcome == "completed" and report.step == 4000
