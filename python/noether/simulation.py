@@ -37,6 +37,17 @@ def _function_of(function):
     return _core.function(function, int(address or 0))
 
 
+def _whole(steps):
+    """A number of steps. @raise ValueError, such as for a time"""
+    try:
+        whole = int(steps)
+    except (TypeError, ValueError, OverflowError):
+        whole = None
+    if whole != steps:
+        raise ValueError(f"{steps!r} is not a whole number of steps; a time is given by until, such as until='1 kyr'")
+    return whole
+
+
 class Simulation:
     """A simulation of particles, or of a system of first order.
 
@@ -92,8 +103,8 @@ class Simulation:
         """Adds a force: one of `nt.forces` or its name, or a function of your own.
 
         A Python function is called as `f(t, x, v, m, a)`: it fills the accelerations `a`, shape (n, 3), which are 0, and
-        returns the potential energy. It costs a microsecond a call and what NumPy takes. A compiled function, such as
-        numba's `@cfunc`, costs what C++ does:
+        returns the potential energy. The arrays hold only until it returns: keep copies. It costs a microsecond a call and
+        what NumPy takes. A compiled function, such as numba's `@cfunc`, costs what C++ does:
 
             double f(int64_t n, int64_t stride, double t, const double* x, const double* v, const double* m, double* a,
                      void* user)
@@ -177,12 +188,16 @@ class Simulation:
         run), or at the times of a list.
 
         `monitor` is one of `nt.monitors`, a writer such as `nt.Trajectory(file="run.h5")`, or a function of your own,
-        `f(t, x, v, m)`, which returns a number, or as many as there are `names`. Of what it tells, `series` has all.
+        `f(t, x, v, m)`, which returns a number, or as many as there are `names`; its arrays hold only until then. Of what
+        monitors tell, `series` has all.
         """
         when = self._cadence(cadence, after)
         if callable(monitor) and not isinstance(monitor, type):
             function = _function_of(monitor)
-            table = {"function": function.id, "names": list(names) if names else [getattr(monitor, "__name__", "value")]}
+            names = [names] if isinstance(names, str) else list(names or [getattr(monitor, "__name__", "value")])
+            if len(set(names)) < len(names):
+                raise ValueError(f"names = {names!r} has a name twice; each number needs a name of its own")
+            table = {"function": function.id, "names": names}
             name = "user_monitor"
         else:
             function, part = None, self._watcher(monitor)
@@ -218,12 +233,15 @@ class Simulation:
         """
         if (steps is None) == (until is None):
             raise TypeError("run takes steps, or until; give one of the two")
+        steps = None if steps is None else _whole(steps)
         held = self._begin()
+        if self._files and not self._unfinished.alive:  # it goes on after close()
+            self._unfinished = weakref.finalize(self, held.finish, "interrupted")
         end = None if until is None else quantities.number_of(until, "time", self._units)
         length = None if end is None else abs(end - held.time)
         with Progress(progress, steps=steps, time=length, begin=(held.step, held.time),
                       unit=_core.unit_names(self._units)[2]) as tell:
-            outcome = Outcome(held.run(None if steps is None else int(steps), end, tell))
+            outcome = Outcome(held.run(steps, end, tell))
         if not outcome.ok:
             _warnings.warn(outcome.text, RunWarning, stacklevel=2)
         return outcome
@@ -373,6 +391,7 @@ class Simulation:
         """Writes all that is still in memory to the files of the run, and marks them complete."""
         if self._held is not None and self._files:
             self._held.finish("completed")
+            self._unfinished.detach()
 
     def __enter__(self):
         return self
@@ -432,7 +451,7 @@ class Simulation:
             for when in self._frame_cadences:
                 self._begin_frames(when)
             if self._files:
-                weakref.finalize(self, self._held.finish, "interrupted")
+                self._unfinished = weakref.finalize(self, self._held.finish, "interrupted")
         return self._held
 
     def _attach(self, name, table, when, function):
