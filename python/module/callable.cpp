@@ -68,11 +68,21 @@ Callable::~Callable() {
 }
 
 void Callable::raise_again() {
-  if (!failed_) return;
-  std::rethrow_exception(std::exchange(failed_, nullptr));
+  if (const std::exception_ptr failed = take_failed()) std::rethrow_exception(failed);
 }
 
+std::exception_ptr Callable::take_failed() { return std::exchange(failed_, nullptr); }
+
 void Callable::clear() { Py_XDECREF(std::exchange(object_, nullptr)); }
+
+void raise_again(const std::vector<std::shared_ptr<Callable>>& functions) {
+  std::exception_ptr first;
+  for (const auto& function : functions) {
+    const std::exception_ptr failed = function->take_failed();  // of all: none is left for a later call
+    if (!first) first = failed;
+  }
+  if (first) std::rethrow_exception(first);
+}
 
 std::shared_ptr<Callable> callable_of(std::int64_t id) {
   Registry& all = registry();
@@ -164,7 +174,8 @@ void UserMonitor::observe(const Snapshot<double>& now) {
     const nb::object told = call(s.time(), vectors_of(s.positions().component(0), n, s.positions().stride(), none),
                                  vectors_of(s.velocities().component(0), n, s.velocities().stride(), none),
                                  numbers_of(s.masses().data(), n, none));
-    if (names.size() == 1 && !nb::hasattr(told, "__len__")) {
+    if (names.size() == 1 && PyObject_Size(told.ptr()) < 0) {  // a number, or an array of no dimension
+      PyErr_Clear();
       values_[0] = nb::cast<double>(nb::float_(told));
       return;
     }

@@ -53,6 +53,8 @@ class Callable {
   }
   /// Raises what was kept, once; the function may then be called again.
   void raise_again();
+  /// The same without raising it; null where there is nothing.
+  std::exception_ptr take_failed();
   /// Lets go of the object: Python's collector has found a cycle.
   void clear();
 
@@ -63,6 +65,8 @@ class Callable {
   std::exception_ptr failed_;
 };
 
+/// Raises what the first of them that has failed has kept; what others have kept goes with it.
+void raise_again(const std::vector<std::shared_ptr<Callable>>& functions);
 std::shared_ptr<Callable> make_callable(nb::object object, std::uintptr_t address);
 /// The function of a number, where it still lives; else null.
 std::shared_ptr<Callable> callable_of(std::int64_t id);

@@ -40,14 +40,28 @@ SceneRun read(nb::handle source, const std::vector<std::string>& sets) {
   return load_run(file, known_parts(), sets);
 }
 
-/// Calls `tell(row, rows, share, what)` now and then; signals are looked for meanwhile.
+/// Calls `tell(row, rows, share, what)` now and then, unless it is None; signals are looked for meanwhile.
 TellShare share_teller(nb::handle tell) {
-  if (tell.is_none()) return {};
   return [tell](const Share& share) {
     const nb::gil_scoped_acquire locked;
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
-    tell(share.row, share.rows, share.done, share.what);
+    if (!tell.is_none()) tell(share.row, share.rows, share.done, share.what);
   };
+}
+
+/// Works without Python's lock. What a function of one's own has raised comes out before what the engine made of it.
+template <class Work> void without_lock(HeldScene& held, const Work& work) {
+  std::exception_ptr failed;
+  {
+    const nb::gil_scoped_release unlocked;
+    try {
+      work();
+    } catch (...) {
+      failed = std::current_exception();
+    }
+  }
+  held.raise_again();
+  if (failed) std::rethrow_exception(failed);
 }
 
 nb::object run_scene(HeldScene& held, const std::string& out, const std::string& existing, bool cost,
@@ -62,19 +76,11 @@ nb::object run_scene(HeldScene& held, const std::string& out, const std::string&
   options.stop = watch.flag();
   options.tell = [&watch](const Progress& progress) { watch.look(progress); };
   std::string json, text;
-  std::exception_ptr failed;
-  {
-    const nb::gil_scoped_release unlocked;
-    try {
-      const RunReport report = run(std::move(held.run()), options);
-      json = to_json(report);
-      text = to_text(report);
-    } catch (...) {
-      failed = std::current_exception();
-    }
-  }
-  held.raise_again();
-  if (failed) std::rethrow_exception(failed);
+  without_lock(held, [&] {
+    const RunReport report = run(std::move(held.run()), options);
+    json = to_json(report);
+    text = to_text(report);
+  });
   watch.raise_again();
   return nb::make_tuple(from_json(json), text);
 }
@@ -99,24 +105,16 @@ nb::object compare_scene(HeldScene& held, const std::vector<std::string>& method
   options.truth.budget = truth_budget;
   options.progress = share_teller(tell);
   std::string json, text;
-  std::exception_ptr failed;
-  {
-    const nb::gil_scoped_release unlocked;
-    try {
-      Scene scene = held.scene();
-      begin_at_minimum(scene);
-      Comparison comparison = compare(scene, options);
-      comparison.command = "noether.compare";
-      CompareFiles files;
-      if (!out.empty()) files = write_files(comparison, out, report_html(comparison, solution_of(scene, comparison)));
-      json = to_json(comparison, files);
-      text = to_text(comparison);
-    } catch (...) {
-      failed = std::current_exception();
-    }
-  }
-  held.raise_again();
-  if (failed) std::rethrow_exception(failed);
+  without_lock(held, [&] {
+    Scene scene = held.scene();
+    begin_at_minimum(scene);
+    Comparison comparison = compare(scene, options);
+    comparison.command = "noether.compare";
+    CompareFiles files;
+    if (!out.empty()) files = write_files(comparison, out, report_html(comparison, solution_of(scene, comparison)));
+    json = to_json(comparison, files);
+    text = to_text(comparison);
+  });
   return nb::make_tuple(from_json(json), text);
 }
 
@@ -129,15 +127,13 @@ nb::object advise_scene(HeldScene& held, double error, const std::optional<std::
   options.row_budget = budget;
   options.progress = share_teller(tell);
   std::string json, text;
-  {
-    const nb::gil_scoped_release unlocked;
+  without_lock(held, [&] {
     Scene scene = held.scene();
     begin_at_minimum(scene);
     const Advice advice = advise(scene, options);
     json = to_json(advice, scene);
     text = to_text(advice, scene);
-  }
-  held.raise_again();
+  });
   return nb::make_tuple(from_json(json), text);
 }
 
@@ -149,27 +145,23 @@ nb::object stability_of(HeldScene& held, const std::vector<std::string>& methods
   options.row_budget = budget;
   options.progress = share_teller(tell);
   std::string json, text;
-  {
-    const nb::gil_scoped_release unlocked;
+  without_lock(held, [&] {
     Scene scene = held.scene();
     begin_at_minimum(scene);
     const Stability found = find_stability(scene, options);
     json = to_json(found);
     text = to_text(found);
-  }
-  held.raise_again();
+  });
   return nb::make_tuple(from_json(json), text);
 }
 
 nb::object evaluate_scene(HeldScene& held, bool check) {
   Evaluation found;
   std::string json;
-  {
-    const nb::gil_scoped_release unlocked;
+  without_lock(held, [&] {
     found = evaluate(held.scene(), check);
     json = evaluation_json(held.scene(), found);
-  }
-  held.raise_again();
+  });
   nb::dict result = nb::borrow<nb::dict>(from_json(json));
   nb::list forces;
   for (Index i = 0; i < held.scene().particles.size(); ++i) {
@@ -182,11 +174,7 @@ nb::object evaluate_scene(HeldScene& held, bool check) {
 
 nb::object explain_scene(HeldScene& held) {
   std::string json;
-  {
-    const nb::gil_scoped_release unlocked;
-    json = explanation_json(held.scene());
-  }
-  held.raise_again();
+  without_lock(held, [&] { json = explanation_json(held.scene()); });
   return from_json(json);
 }
 
@@ -203,6 +191,22 @@ int clear(PyObject* self) {
 }
 PyType_Slot slots[] = {
     {Py_tp_traverse, reinterpret_cast<void*>(traverse)}, {Py_tp_clear, reinterpret_cast<void*>(clear)}, {0, nullptr}};
+
+int traverse_function(PyObject* self, visitproc visit, void* arg) {
+#if PY_VERSION_HEX >= 0x03090000
+  Py_VISIT(Py_TYPE(self));
+#endif
+  if (!nb::inst_ready(self)) return 0;
+  Py_VISIT(nb::inst_ptr<Callable>(self)->object());
+  return 0;
+}
+int clear_function(PyObject* self) {
+  nb::inst_ptr<Callable>(self)->clear();
+  return 0;
+}
+PyType_Slot function_slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(traverse_function)},
+                                {Py_tp_clear, reinterpret_cast<void*>(clear_function)},
+                                {0, nullptr}};
 
 }  // namespace
 
@@ -229,23 +233,23 @@ HeldScene::HeldScene(nb::object source, const std::vector<std::string>& sets,
   raise_again();
 }
 
-void HeldScene::raise_again() {
-  for (const auto& function : functions_) function->raise_again();
-}
+void HeldScene::raise_again() { noether::python::raise_again(functions_); }
 
 int traverse_functions(const std::vector<std::shared_ptr<Callable>>& functions, visitproc visit, void* arg) {
   for (const auto& function : functions) {
-    // A function that others hold too is not of this object alone: it is visited as often as its owners are.
-    Py_VISIT(function->object());
+    // A reference that a scene and its simulation share would be visited twice: it counts as held from elsewhere.
+    if (function.use_count() == 1) Py_VISIT(nb::find(*function).ptr());
   }
   return 0;
 }
 void clear_functions(std::vector<std::shared_ptr<Callable>>& functions) {
-  for (const auto& function : functions) function->clear();
+  const auto dropped = std::exchange(functions, {});  // others may go on with them
 }
 
 void bind_scenes(nb::module_& m) {
-  nb::class_<Callable>(m, "Function").def_prop_ro("id", &Callable::id).def("raise_again", &Callable::raise_again);
+  nb::class_<Callable>(m, "Function", nb::type_slots(function_slots))
+      .def_prop_ro("id", &Callable::id)
+      .def("raise_again", &Callable::raise_again);
   m.def("function", &make_callable, nb::arg("object"), nb::arg("address"));
 
   nb::class_<HeldScene>(m, "Scene", nb::type_slots(slots))

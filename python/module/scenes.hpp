@@ -41,7 +41,8 @@ void bind_simulations(nb::module_& m);
 void bind_parts(nb::module_& m);
 void bind_elements(nb::module_& m);
 
-/// For Python's collector: visits, or lets go of, functions.
+/// For Python's collector: visits, or lets go of, the objects `Function` that a scene or a simulation holds. Each of
+/// these visits the function itself: it has the only reference to it.
 int traverse_functions(const std::vector<std::shared_ptr<Callable>>& functions, visitproc visit, void* arg);
 void clear_functions(std::vector<std::shared_ptr<Callable>>& functions);
 

@@ -203,9 +203,7 @@ class HeldSimulation {
     raise_again();
     return settled;
   }
-  void raise_again() {
-    for (const auto& function : functions_) function->raise_again();
-  }
+  void raise_again() { noether::python::raise_again(functions_); }
 
   double time_of(const std::string& text) const { return parse_quantity(text, dimensions::time, *units_); }
 

@@ -144,6 +144,33 @@ def test_a_run_goes_on_after_an_exception_that_does_not_come_again():
     assert sim.digest == undisturbed.digest
 
 
+def test_of_two_functions_that_raise_none_comes_out_later():
+    broken = [False]
+
+    def force(t, x, v, m, a):
+        if broken[0]:
+            raise Overboard(t)
+        return 0.0
+
+    sim = nt.Simulation(three_bodies(), method="verlet", step=0.01)
+    sim.add_force(force)
+    sim.add_force(lambda *given: force(*given))
+    scene = sim.scene
+    broken[0] = True
+    with pytest.raises(Overboard):
+        scene.evaluate()
+    broken[0] = False
+    assert scene.evaluate()["schema"] == "noether.evaluate/1"
+
+
+def test_a_monitor_may_return_an_array_of_one_number_without_dimension():
+    sim = nt.Simulation(three_bodies(), method="verlet", step=0.01)
+    sim.add_force(nt.Gravity())
+    sim.every(1, lambda t, x, v, m: numpy.array(t), names="moment")
+    sim.run(2)
+    assert sim.series("user_monitor").moment.tolist() == [0, 0.01, 0.02]
+
+
 def test_a_monitor_that_raises_ends_the_run_where_it_looked():
     def watch(t, x, v, m):
         if t > 0.5:

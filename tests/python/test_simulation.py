@@ -256,6 +256,18 @@ def test_dual_numbers():
 # ---- lifetimes ------------------------------------------------------------------------------------------------------
 
 
+def test_a_file_that_was_closed_stays_complete_when_its_simulation_is_gone(two_bodies):
+    sim = kepler(two_bodies)
+    sim.every(1, nt.Trajectory(file="closed.h5"))
+    sim.run(10)
+    sim.close()
+    sim.run(10)  # which goes on with the file
+    sim.close()
+    del sim
+    gc.collect()
+    assert nt.info("closed.h5").complete
+
+
 def test_cycles_are_collected(two_bodies):
     class Force:
         def __call__(self, t, x, v, m, a):
@@ -270,6 +282,31 @@ def test_cycles_are_collected(two_bodies):
     del sim, force
     gc.collect()
     assert gone() is None
+
+
+def test_a_cycle_of_a_simulation_that_has_not_begun_is_collected(two_bodies):
+    def made():
+        held = []
+        sim = nt.Simulation(two_bodies, method="verlet", step=0.01)
+        sim.add_force(lambda t, x, v, m, a: float(len(held)))
+        held.append(sim)
+        return weakref.ref(sim)
+
+    gone = made()
+    gc.collect()
+    assert gone() is None
+
+
+def test_a_scene_that_is_collected_leaves_its_functions_to_the_simulation(two_bodies):
+    sim = nt.Simulation(two_bodies, method="verlet", step=0.01)
+    sim.add_force(lambda t, x, v, m, a: 0.0)
+    sim.run(1)
+    held = sim.scene._held
+    cycle = [held]
+    cycle.append(cycle)  # the collector takes it apart
+    del held, cycle
+    gc.collect()
+    assert sim.run(1).ok
 
 
 def test_nothing_is_left_at_the_end():
