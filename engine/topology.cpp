@@ -99,6 +99,12 @@ Topology Topology::without_rigid_terms(Index n) const {
   return rest;
 }
 
+bool Topology::has_dihedral_kinds() const {
+  return std::all_of(dihedrals.begin(), dihedrals.end(), [&](const BondedTerm<4>& term) {
+    return static_cast<std::size_t>(term.type) < dihedral_kinds.size();
+  });
+}
+
 bool Topology::is_special(Index i, Index j) const { return pair_factor(i, j) != 1; }
 
 double Topology::pair_factor(Index i, Index j) const {

@@ -82,6 +82,13 @@ struct Topology {
   };
   std::vector<ScaledPair> scaled_pairs;  ///< sorted
 
+  /// Whether a dihedral is a pair force between its ends, and nothing else.
+  bool acts_on_ends(const BondedTerm<4>& dihedral) const {
+    const auto kind = static_cast<std::size_t>(dihedral.type);
+    return kind < dihedral_kinds.size() && dihedral_kinds[kind].potential == "one_four";
+  }
+  /// Whether all dihedrals have kinds. Where one has none, a kind that is added would become its own.
+  bool has_dihedral_kinds() const;
   /// Whether the pair force of two particles is excluded or scaled. @cost O(log pairs)
   bool is_special(Index i, Index j) const;
   /// What is left of the pair force of two particles: 0 of an excluded pair, 1 of most. @cost O(log pairs)

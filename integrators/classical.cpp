@@ -97,7 +97,8 @@ template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
   field_->bind(s);
   if (group != nullptr && choice_.info->on_groups) group->check_start(s);
   const FieldClaims field = field_->claims();
-  const bool of_lagrangian = method_->has_action() && LagrangianField<Real>::behind(*field_) != nullptr;
+  const bool of_lagrangian =
+      (method_->has_action() || method.of_lagrangian) && LagrangianField<Real>::behind(*field_) != nullptr;
   if (method.second_order_only && !field.second_order && !of_lagrangian) {
     throw SchemeMismatch(
         fmt::format("method '{}' is for q'' = a only, but '{}' is a first-order system; use a method "

@@ -28,6 +28,7 @@ struct MethodClaims {
   bool keeps_angular_momentum = false;  ///< where the field does; all but energy-exact methods then every quadratic
                                         ///< invariant
   bool second_order_only = false;       ///< serves q'' = a only
+  bool of_lagrangian = false;           ///< and Lagrangians, without telling an action
   bool positions_only = false;          ///< serves q'' = a(t, q) only, no velocity-dependent forces
   bool turns_only = false;              ///< of velocity-dependent forces it serves those that turn velocities alone
   bool gravity_only = false;            ///< serves masses of no size that attract each other, and what acts beside that

@@ -40,6 +40,11 @@ std::vector<Structure::EndPair> pairs_three_bonds_apart(const Topology& topology
 void add_end_pairs(const TextFile& text, const Structure& structure, const ParticleSystem<double>& s,
                    Topology& topology) {
   if (structure.end_pairs.empty()) return;
+  if (!topology.has_dihedral_kinds()) {
+    text.fail(0,
+              "the ends of dihedrals interact as pairs, but there are no parameters for the kinds of the dihedrals; "
+              "give the parameters of each kind in section 'Dihedral Coeffs'");
+  }
   Topology ends;  // mixes their parameters
   ends.pair_kinds = structure.end_kinds.empty() ? topology.pair_kinds : structure.end_kinds;
   ends.explicit_pairs = structure.end_kinds.empty() ? topology.explicit_pairs : structure.explicit_end_kinds;

@@ -36,8 +36,7 @@ std::vector<std::array<Index, 4>> dihedrals_of(const Topology& topology, const s
   std::vector<std::array<Index, 4>> chosen;
   std::set<std::array<Index, 4>> seen;
   for (const BondedTerm<4>& term : topology.dihedrals) {
-    const auto kind = static_cast<std::size_t>(term.type);
-    if (kind < topology.dihedral_kinds.size() && topology.dihedral_kinds[kind].potential == "one_four") continue;
+    if (topology.acts_on_ends(term)) continue;
     const std::array<Index, 4>& four = term.particles;
     if (!has_types(four) && !has_types(reversed(four))) continue;
     if (seen.insert(std::min(four, reversed(four))).second) chosen.push_back(four);

@@ -227,13 +227,17 @@ void read_special_pairs(TableReader& reader, ParticleSystem<double>& s, SceneVal
     if (!pairs.emplace(pair, own).second) refuse(", a pair that is already listed; take one out");
   }
   Topology topology = s.topology() != nullptr ? *s.topology() : Topology{};
+  if (!topology.has_dihedral_kinds()) {
+    reader.fail("special_pair",
+                "special pairs become terms beside the dihedrals of the structure, but there are no parameters for the "
+                "kinds of these; give the parameters of each kind in section 'Dihedral Coeffs'");
+  }
   std::vector<Topology::Pair> all;
   for (const auto& [pair, own] : pairs) all.push_back(pair);
   topology.exclude(all);
   std::erase_if(topology.dihedrals, [&](const BondedTerm<4>& term) {
     const auto [first, last] = std::minmax(term.particles.front(), term.particles.back());
-    return topology.dihedral_kinds[static_cast<std::size_t>(term.type)].potential == "one_four" &&
-           pairs.contains({first, last});
+    return topology.acts_on_ends(term) && pairs.contains({first, last});
   });
   std::map<std::array<double, 3>, int> known;
   for (const auto& [pair, own] : pairs) {

@@ -41,6 +41,14 @@ bool none_does(const Scene& scene, std::optional<bool> ForceClaims::*says) {
                      [&](const SceneForce& f) { return !(f.force.claims().*says).value_or(true); });
 }
 
+/// How many terms are what is left of pair forces that the topology excludes. Constraints may stand in the place of
+/// all other terms, but not of these.
+std::size_t terms_of_ends(const Topology& topology) {
+  return static_cast<std::size_t>(
+      std::count_if(topology.dihedrals.begin(), topology.dihedrals.end(),
+                    [&](const BondedTerm<4>& term) { return topology.acts_on_ends(term); }));
+}
+
 /// Names of the forces that leave excluded pairs out.
 std::vector<std::string> with_exclusions(const Parts& parts) {
   std::vector<std::string> names;
@@ -272,10 +280,10 @@ std::vector<std::string> warnings_of(const Scene& scene) {
     if (!warning.empty()) warnings.push_back(std::move(warning));
   };
   const std::vector<SceneForce>& forces = scene.hamiltonian.forces;
-  // Constraints may stand in the place of bonds.
-  if (const Topology* t = scene.particles.topology();
-      t != nullptr && scene.hamiltonian.constraints.empty() && !some(scene, &ForceClaims::bonded)) {
-    const std::size_t terms = t->bonds.size() + t->angles.size() + t->dihedrals.size() + t->impropers.size();
+  if (const Topology* t = scene.particles.topology(); t != nullptr && !some(scene, &ForceClaims::bonded)) {
+    const std::size_t terms = scene.hamiltonian.constraints.empty()
+                                  ? t->bonds.size() + t->angles.size() + t->dihedrals.size() + t->impropers.size()
+                                  : terms_of_ends(*t);
     if (terms > 0) {
       add(fmt::format("the structure has {} that nothing acts on: there is no force 'bonded'",
                       counted(static_cast<std::int64_t>(terms), "bonded term")));

@@ -29,8 +29,9 @@ void check_charges(const ChargeLists& of) {
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (!std::equal(&of.positions[3 * i], &of.positions[3 * i] + 3, &of.positions[3 * j])) continue;
-      refuse_field("positions", fmt::format("that of charge {}", i + 1),
-                   fmt::format("is that of charge {} too; put them at two places", j + 1));
+      const Vec3<double> at = of_charge(of.positions, i);
+      refuse_field("positions", fmt::format("({:.9g}, {:.9g}, {:.9g})", at[0], at[1], at[2]),
+                   fmt::format("puts charges {} and {} at one place; put them at two", j + 1, i + 1));
     }
   }
 }

@@ -19,7 +19,9 @@ template <class Real> MethodClaims WeberStep<Real>::claims() const {
           .order = 2,
           .symplectic = !over_lagrangian_,
           .reversible = !remembers(),
-          .keeps_angular_momentum = true};
+          .keeps_angular_momentum = true,
+          .second_order_only = true,
+          .of_lagrangian = true};
 }
 
 template <class Real> void WeberStep<Real>::bind(const VectorField<Real>& f) {

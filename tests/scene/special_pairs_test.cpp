@@ -7,13 +7,16 @@
 #include "forces/check_gradient.hpp"
 #include "numbers/error.hpp"
 #include "scene/scene.hpp"
+#include "scene/warnings.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/pair_forces.hpp"
+#include "tests/support/process.hpp"
 
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace noether {
 namespace {
@@ -162,6 +165,44 @@ TEST_CASE("special factors and pairs that make no sense are refused by name", "[
       "them, or list the pair in exclusions");
   CHECK(refusal(pair + "charge_product = '1 e^2'\n") ==
         "scene.toml:5: this [[particles.special_pair]] has no ids; give those of its two particles");
+}
+
+TEST_CASE("dihedrals without parameters never take those of special pairs", "[scene][special][messages]") {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "chain.data",
+                   "#\n4 atoms\n3 bonds\n1 dihedrals\n1 atom types\n1 bond types\n1 dihedral types\n0 9 xlo xhi\n0 9 "
+                   "ylo yhi\n0 9 zlo zhi\n\nMasses\n\n1 1\n\nPair Coeffs # lj/cut\n\n1 1 1\n\nBond Coeffs # "
+                   "harmonic\n\n1 1 1\n\nAtoms # full\n\n1 1 1 1 1 1 1\n2 1 1 0 2 1 1\n3 1 1 0 2 2 1\n4 1 1 -1 2 2 "
+                   "2\n\nBonds\n\n1 1 1 2\n2 1 2 3\n3 1 3 4\n\nDihedrals\n\n1 1 1 2 3 4\n");
+  const auto read = [&](const std::string& keys) {
+    return test::error_of([&] {
+      read_scene("units = 'reduced'\n[particles]\nstructure = 'chain.data'\n" + keys +
+                     "[hamiltonian]\ntype = 'kinetic_potential'\n[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = "
+                     "1\n",
+                 folder / "scene.toml");
+    });
+  };
+  CHECK(read("").empty());
+  const std::string told = "give the parameters of each kind in section 'Dihedral Coeffs'";
+  CHECK(read("[[particles.special_pair]]\nids = [1, 4]\ncharge_product = 1\n").find(told) != std::string::npos);
+  CHECK(read("special = {lennard_jones = [0, 0, 0.5], charges = [0, 0, 0.8]}\n").find(told) != std::string::npos);
+}
+
+TEST_CASE("special pairs that nothing acts on are warned of, with constraints too", "[scene][special][warnings]") {
+  const auto of = [](const std::string& force) {
+    return warnings_of(
+        read_scene("units = 'reduced'\n[particles]\n[[particles.body]]\nname = 'a'\nmass = 1\ncharge = 1\n"
+                   "[[particles.body]]\nname = 'b'\nmass = 1\ncharge = 1\nx = [1, 0, 0]\n"
+                   "[[particles.special_pair]]\nids = [0, 1]\ncharge_product = 0.5\n[hamiltonian]\n"
+                   "type = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'coulomb'\n" +
+                       force +
+                       "[[hamiltonian.constraint]]\ntype = 'fixed'\nbodies = ['b']\n"
+                       "[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 1\n",
+                   "scene.toml"));
+  };
+  CHECK(of("") ==
+        std::vector<std::string>{"the structure has 1 bonded term that nothing acts on: there is no force 'bonded'"});
+  CHECK(of("[[hamiltonian.force]]\ntype = 'bonded'\n").empty());
 }
 
 }  // namespace noether
