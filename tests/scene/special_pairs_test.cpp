@@ -11,6 +11,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/pair_forces.hpp"
 #include "tests/support/process.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -175,11 +176,13 @@ TEST_CASE("dihedrals without parameters never take those of special pairs", "[sc
                    "harmonic\n\n1 1 1\n\nAtoms # full\n\n1 1 1 1 1 1 1\n2 1 1 0 2 1 1\n3 1 1 0 2 2 1\n4 1 1 -1 2 2 "
                    "2\n\nBonds\n\n1 1 1 2\n2 1 2 3\n3 1 3 4\n\nDihedrals\n\n1 1 1 2 3 4\n");
   const auto read = [&](const std::string& keys) {
-    return test::error_of([&] {
-      read_scene("units = 'reduced'\n[particles]\nstructure = 'chain.data'\n" + keys +
-                     "[hamiltonian]\ntype = 'kinetic_potential'\n[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = "
-                     "1\n",
-                 folder / "scene.toml");
+    return test::refusal_of([&] {
+      read_scene(
+          "units = 'reduced'\n[particles]\nstructure = 'chain.data'\n" + keys +
+              "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'lennard_jones'\ncutoff = 2\n"
+              "[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = "
+              "1\n",
+          folder / "scene.toml");
     });
   };
   CHECK(read("").empty());
@@ -192,7 +195,7 @@ TEST_CASE("special pairs that nothing acts on are warned of, with constraints to
   const auto of = [](const std::string& force) {
     return warnings_of(
         read_scene("units = 'reduced'\n[particles]\n[[particles.body]]\nname = 'a'\nmass = 1\ncharge = 1\n"
-                   "[[particles.body]]\nname = 'b'\nmass = 1\ncharge = 1\nx = [1, 0, 0]\n"
+                   "[[particles.body]]\nname = 'b'\nmass = 1\ncharge = 1\nx = [1, 0, 0]\nv = [0, 0, 0]\n"
                    "[[particles.special_pair]]\nids = [0, 1]\ncharge_product = 0.5\n[hamiltonian]\n"
                    "type = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'coulomb'\n" +
                        force +
