@@ -223,7 +223,28 @@ def open_run(path):
     return RunFile(os.path.join(path, "run.h5") if os.path.isdir(path) else path)
 
 
-class Report:
+class _Told:
+    """What the engine told as JSON, each entry an attribute; it is printed as the program prints it."""
+
+    def __init__(self, told, text):
+        self._told, self._text = _figures(told), text
+
+    def __getattr__(self, name):
+        if name.startswith("_"):  # before there is anything told: pickle and copy ask
+            raise AttributeError(name)
+        try:
+            return self._told[name]
+        except KeyError:
+            raise AttributeError(f"{type(self).__name__} has no {name!r}; it has: {', '.join(self._told)}") from None
+
+    def to_dict(self):
+        return dict(self._told)
+
+    def __repr__(self):
+        return self._text
+
+
+class Report(_Told):
     """How a run went, as report.json has it, each entry an attribute: `outcome`, `digest`, `step`, `time`, `wall_s`, ...
 
     `monitors` has the figures of each monitor; `frames`, `series(monitor)`, `to_dataframe()` and `to_xarray()` read the
@@ -231,15 +252,8 @@ class Report:
     """
 
     def __init__(self, told, text):
-        self._told, self._text, self._opened = _figures(told), text, None
-
-    def __getattr__(self, name):
-        if name.startswith("_"):
-            raise AttributeError(name)
-        try:
-            return self._told[name]
-        except KeyError:
-            raise AttributeError(f"a report has no {name!r}; it has: {', '.join(self._told)}") from None
+        super().__init__(told, text)
+        self._opened = None
 
     @property
     def ok(self):
@@ -272,28 +286,11 @@ class Report:
     def plot(self, **options):
         return self.run.plot(**options)
 
-    def to_dict(self):
-        return dict(self._told)
 
-    def __repr__(self):
-        return self._text
-
-
-class _Study:
+class _Study(_Told):
     """A study, as its JSON has it; `rows` as a DataFrame."""
 
     _rows = "rows"
-
-    def __init__(self, told, text):
-        self._told, self._text = _figures(told), text
-
-    def __getattr__(self, name):
-        if name.startswith("_"):
-            raise AttributeError(name)
-        try:
-            return self._told[name]
-        except KeyError:
-            raise AttributeError(f"{type(self).__name__} has no {name!r}; it has: {', '.join(self._told)}") from None
 
     def to_dataframe(self):
         import pandas
@@ -303,12 +300,6 @@ class _Study:
     @property
     def rows(self):
         return self.to_dataframe()
-
-    def to_dict(self):
-        return dict(self._told)
-
-    def __repr__(self):
-        return self._text
 
 
 class Comparison(_Study):

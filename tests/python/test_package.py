@@ -1,9 +1,11 @@
 """What `pip install` brings: the module, the program, the scenes of the suite and of the examples."""
 
+import errno
 import os
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -43,13 +45,31 @@ def test_a_reader_that_has_seen_enough_ends_the_command_silently(program):
     assert int(told.stdout.splitlines()[-1]) in (0, 128 + signal.SIGPIPE)  # 0: the pipe held all of it
 
 
+def writing_end(fifo, reader, seconds=60):
+    """The writing end of a FIFO, once a program has opened the other one; None if it ended, or has not after these seconds."""
+    limit = time.monotonic() + seconds
+    while reader.poll() is None and time.monotonic() < limit:
+        try:
+            return os.open(fifo, os.O_WRONLY | os.O_NONBLOCK)
+        except OSError as wrong:
+            if wrong.errno != errno.ENXIO:  # ENXIO: nobody reads it yet
+                raise
+            time.sleep(0.01)
+    return None
+
+
 def test_an_interrupt_ends_a_command_that_has_no_way_of_its_own_to_end(program, tmp_path):
     scene = tmp_path / "scene.toml"
     os.mkfifo(scene)
     with subprocess.Popen([*files.program(), "explain", scene], stderr=subprocess.PIPE, cwd=tmp_path) as running:
-        with open(scene, "w"):  # opened once the program reads, and waits for more
+        try:
+            end = writing_end(scene, running)
+            assert end is not None, "the program did not read its scene"
             running.send_signal(signal.SIGINT)
-            assert running.wait(timeout=60) == -signal.SIGINT
+            assert running.wait(timeout=60) == -signal.SIGINT  # it waited for what is to be written
+            os.close(end)
+        finally:
+            running.kill()
         assert running.stderr.read() == b""
 
 
