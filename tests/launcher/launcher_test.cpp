@@ -69,8 +69,8 @@ chmod +x "$2/cli/noether"
   fs::path tree(const std::string& name = "") const { return path() / "tree" / name; }
 
   std::vector<std::string> command(const std::string& line, const std::vector<std::string>& settings = {}) const {
-    std::vector<std::string> all{"env", "-u", "NOETHER_WERROR", "-u", "NOETHER_UNITY", "-u", "NOETHER_TELL_EVERY",
-                                 "-u",  "NOETHER_PYTHON"};
+    std::vector<std::string> all{
+        "env", "-u", "NOETHER_WERROR", "-u", "NOETHER_UNITY", "-u", "NOETHER_TELL_EVERY", "-u", "NOETHER_PYTHON"};
     all.push_back("PATH=" + (path() / "bin").string() + ":/usr/sbin:/usr/bin:/sbin:/bin");
     all.push_back("CALLS=" + (path() / "calls").string());
     all.insert(all.end(), settings.begin(), settings.end());
@@ -110,8 +110,8 @@ TEST_CASE("the launcher's help is answered at once: nothing is built, and nothin
   CHECK(has(checkout.launch("test --help").out, "Folders: forces io lint tsan\n"));
   CHECK(has(checkout.launch("bench --help").out, "Benchmarks: kepler lj_melt\n"));
   const std::string help = checkout.launch("--help").out;
-  for (const char* part : {"\n  build ", "\n  test ", "\n  bench ", "\n  wheel ", " run ", " explain ",
-                           "about eight minutes"}) {
+  for (const char* part :
+       {"\n  build ", "\n  test ", "\n  bench ", "\n  wheel ", " run ", " explain ", "about eight minutes"}) {
     CHECK(has(help, part));
   }
   CHECK_FALSE(fs::exists(checkout.tree("build")));
@@ -344,14 +344,29 @@ chmod +x "${!#}"/bin/*
   CHECK(has(checkout.calls(), "\ncmake --preset release\nninja test_io\n"));
   CHECK(checkout.built() == "ninja noether\n");  // running a scene needs no Python, and asks for none
 
+  fs::remove(checkout.path() / "calls");
+  const ProcessResult again = checkout.launch("test io", {"OFFLINE=1"});
+  CHECK(has(again.err, "noether: the Python package is left out: no route"));
+  CHECK(has(again.err, "to try again before tomorrow: rm build/.no-python\n"));
+  CHECK(checkout.calls() == "ninja test_io\n");  // no attempt that would fail as the last one did
+
   const std::string python = checkout.tree("build/python/bin/python").string();
-  const std::string with = "cmake --preset release -DNOETHER_PYTHON:BOOL=ON -DPython_EXECUTABLE=" + python + "\n";
+  const std::string with = "cmake --preset release -U _Python* -DNOETHER_PYTHON:BOOL=ON -DPython_EXECUTABLE=" + python;
+  fs::last_write_time(checkout.tree("build/.no-python"), fs::file_time_type::clock::now() - std::chrono::hours(25));
   CHECK(checkout.launch("test io").exit_code == 0);
   CHECK(has(checkout.calls(), "pip install --disable-pip-version-check "));
-  CHECK(has(checkout.calls(), with + "ninja test_io\n"));
+  CHECK(has(checkout.calls(), with + "\nninja test_io\n"));
+  CHECK_FALSE(fs::exists(checkout.tree("build/.no-python")));
   fs::remove(checkout.path() / "calls");
   CHECK(checkout.launch("test io").exit_code == 0);
   CHECK(checkout.calls() == "ninja test_io\n");  // it is there: nothing is asked again
+
+  // Another Python in the place of the one that it was made for: it is made anew, and CMake forgets the old headers.
+  fs::rename(python, python + "3.13");
+  fs::create_symlink(python + "3.13", python);
+  CHECK(checkout.launch("test io").exit_code == 0);
+  CHECK(has(checkout.calls(), "pip install --disable-pip-version-check "));
+  CHECK(has(checkout.calls(), with + "\nninja test_io\n"));
 
   fs::remove(checkout.path() / "calls");
   const std::string without = "cmake --preset release -DNOETHER_PYTHON:BOOL=OFF\nninja test_io\n";
