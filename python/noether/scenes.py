@@ -7,17 +7,21 @@ from . import _core, parts, quantities, reports
 
 def example(name):
     """The path of an example's scene, such as "figure_eight"."""
-    for folder in _example_folders():
-        file = os.path.join(folder, name, "scene.toml")
-        if os.path.exists(file):
-            return file
-    raise FileNotFoundError(f"noether has no example {name!r}{parts._proposal(name, dict.fromkeys(examples()))}")
+    found = _example_scene(name)
+    if found is None:
+        raise FileNotFoundError(f"noether has no example {name!r}{parts._proposal(name, dict.fromkeys(examples()))}")
+    return found
 
 
 def examples():
     """Names of all examples that come with noether."""
     return sorted({one for folder in _example_folders() for one in os.listdir(folder)
                    if os.path.exists(os.path.join(folder, one, "scene.toml"))})
+
+
+def _example_scene(name):
+    files = (os.path.join(folder, name, "scene.toml") for folder in _example_folders())
+    return next(filter(os.path.exists, files), None)
 
 
 def _example_folders():
@@ -78,8 +82,8 @@ class Scene:
             source = source.tree()
         if not isinstance(source, dict):
             source = os.fspath(source)
-            if not os.path.exists(source) and source in examples():
-                source = example(source)
+            if not os.path.exists(source):
+                source = _example_scene(source) or source
         self._source, self._functions = source, list(functions)
         self._set_lines = [*changed, *_sets(set, until)]
         self._held = self._read()
