@@ -127,6 +127,11 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     if (!observing_) count(kick);
   }
 
+  /// Tells that a flow that stands around it has moved the particles: the next kick of a run is an evaluation.
+  void note_move() {
+    if (observing_) return;
+    for (Kick& kick : kicks_) kick.moved = true;
+  }
   /// Brings velocities back along the constraints, for flows of other letters; nothing where there are none.
   void project_velocities(ParticleSystem<Real>& s, const Real& h) { project(s, h); }
 
@@ -305,8 +310,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     } else {
       s.advance_positions(h);
     }
-    if (observing_) return;
-    for (Kick& kick : kicks_) kick.moved = true;
+    note_move();
   }
   /// v += h a, and where there are bodies S += h torque.
   void push(const Kick& kick, ParticleSystem<Real>& s, const Real& h) {

@@ -34,6 +34,7 @@
 #include "integrators/minimize.hpp"
 #include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
+#include "integrators/shearing_sheet.hpp"
 #include "integrators/systems/darwin.hpp"
 #include "integrators/systems/double_pendulum.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
@@ -57,8 +58,8 @@
 #include "io/trajectory.hpp"
 #include "monitors/charges.hpp"
 #include "monitors/dihedrals.hpp"
-#include "monitors/field_momentum.hpp"
 #include "monitors/dipole.hpp"
+#include "monitors/field_momentum.hpp"
 #include "monitors/momentum_map.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/orbital_monitors.hpp"
@@ -198,6 +199,7 @@ Parts standard_parts() {
   parts.add_hamiltonian<WisdomHolmanOptions>();
   parts.add_hamiltonian<ChargedParticlesOptions>();
   parts.add_hamiltonian<KSymplecticOptions>();
+  parts.add_hamiltonian<ShearingSheetOptions>();
   parts.add_thermostat<LangevinOptions>();
   parts.add_thermostat<VelocityRescalingOptions>();
   parts.add_force<Gravity>();

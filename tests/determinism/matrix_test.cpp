@@ -19,6 +19,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
+#include "integrators/shearing_sheet.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/determinism/twins.hpp"
 #include "tests/support/catch.hpp"
@@ -191,6 +192,25 @@ std::vector<Twin> turning_twins() {
            .method = "yoshida_4"}};
 }
 
+/// A cloud in a shearing sheet, with and without compensation.
+std::vector<Twin> sheet_twins() {
+  const ShearingSheetOptions frame{.Omega = 0.7, .Omega_z = 1.1};
+  std::vector<Twin> twins;
+  for (const bool compensated : {false, true}) {
+    const CompositionOptions options{.compensated = compensated};
+    twins.push_back(
+        {.name = compensated ? "a shearing sheet, compensated" : "a shearing sheet",
+         .bodies = test::cloud(300),
+         .program = compose(ShearingSheet(Gravity{.G = 1, .softening = 0.05}, frame), schemes::aba_8_6_4, options),
+         .step = 0.01,
+         .hamiltonian = "[hamiltonian]\ntype='shearing_sheet'\nOmega=0.7\nOmega_z=1.1\n"
+                        "[[hamiltonian.force]]\ntype='gravity'\nG=1\nsoftening=0.05\n",
+         .method = "aba_8_6_4",
+         .options = options});
+  }
+  return twins;
+}
+
 /// A liquid of bent bodies of three sites with atoms between them, by both rotors.
 std::vector<Twin> rigid_twins() {
   const ParticleSystem<double> atoms = test::liquid(5, 0.3, 1, 0.1);
@@ -324,7 +344,7 @@ std::vector<Twin> exact_energy_twins() {
 void check_all_twins(std::size_t stride) {
   for (const auto& twins :
        {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), projected_twins(), turning_twins(),
-        rigid_twins(), two_word_twins(), charged_twins(), exact_energy_twins(), corrected_twins(),
+        sheet_twins(), rigid_twins(), two_word_twins(), charged_twins(), exact_energy_twins(), corrected_twins(),
         wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
         wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);

@@ -477,7 +477,7 @@ TEST_CASE("what cannot be compared is refused in words", "[compare]") {
   CHECK(refusal({.methods = {"verlet@kinetic"}}) == "unknown hamiltonian 'kinetic'; did you mean 'kinetic_potential'?");
   CHECK(refusal({.methods = {"verlet@newtonian"}}) ==
         "unknown hamiltonian 'newtonian'; expected one of: kinetic_potential, wisdom_holman, charged_particles, "
-        "k_symplectic");
+        "k_symplectic, shearing_sheet");
   CHECK(refusal({.methods = {"verlet@wisdom_holman"}}) ==
         "'verlet@wisdom_holman': the scene has no splitting 'wisdom_holman'; leave '@wisdom_holman' out");
   CHECK(refusal({.steps = {-1}}) == "a step of -1 is not valid; a time above 0 is expected");
