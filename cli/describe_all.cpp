@@ -79,7 +79,8 @@ void print_part(const std::string& kind, const PartInfo& info) {
 void print_methods(const Parts& parts) {
   fmt::print(
       "\n## Methods\n\nEvery method takes the keys of `[integrator]` down to `exact`. Splitting schemes take "
-      "`compensated`, `corrector`, `kernel` and\n`second_corrector` too, classical methods these; `noether describe "
+      "`compensated`, `corrector`, `kernel` and\n`second_corrector` too, `respa` `inner_steps`, classical methods "
+      "these; `noether describe "
       "METHOD` has the defaults of each, and "
       "[methods.md](methods.md) its measured order and cost.\n\n| keys | methods |\n|---|---|\n");
   std::vector<std::pair<std::string, std::vector<std::string>>> rows;

@@ -228,7 +228,7 @@ SceneTable force() {
   return {"[[hamiltonian.force]]", "One force; as many tables as there are forces.",
           fields({{"type", "text", "1", "", "a force", "\"gravity\""},
                   {"kick", "text", "1", "\"B\"",
-                   "the letter of its kicks, for multiple time steps with a word such as \"CBABABC\""}})};
+                   "the letter of its kicks, for multiple time steps by respa or a word such as \"CBABABC\""}})};
 }
 
 SceneTable charge_field() {

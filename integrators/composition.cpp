@@ -1,13 +1,16 @@
 #include "integrators/composition.hpp"
 
 #include "numbers/error.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace noether {
@@ -124,12 +127,45 @@ void append(std::vector<Stage>& word, const Stage& stage, bool joined) {
 
 /// A composition over the basic word of a Hamiltonian, which is a palindrome: of each letter the weights are equal.
 std::vector<Stage> composed(const Scheme& scheme, std::string_view basic, bool joined) {
+  std::map<char, int> times;
+  for (const char letter : basic) ++times[letter];
   std::vector<Stage> word;
   for (std::size_t k = 0; k < scheme.substep_count; ++k) {
-    for (const char letter : basic) {
-      const auto times = static_cast<double>(std::count(basic.begin(), basic.end(), letter));
-      append(word, {letter, scheme.substeps[k] / Quad(times)}, joined);
+    for (const char letter : basic) append(word, {letter, scheme.substeps[k] / Quad(times.at(letter))}, joined);
+  }
+  return word;
+}
+
+/// The basic word of multiple time steps: within each step of slower kicks so many of faster ones, and at its ends half
+/// a kick.
+/// @throws SchemeMismatch  for other levels than there are letters of kicks, or kicks that do not stand at the ends
+std::string nested_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian,
+                        const InnerSteps& steps) {
+  const std::string& kicks = claims.kicks;
+  if (steps.size() + 1 != kicks.size()) {
+    const bool single = kicks.size() == 1;
+    throw SchemeMismatch(
+        fmt::format("method '{}' has inner_steps = {}, but the forces of '{}' are in the {} {}; {}", scheme.name,
+                    steps.text(), hamiltonian, single ? "kick" : "kicks", fmt::join(kicks, ", "),
+                    single ? "give kick = \"C\" in the table of a slow force, or take inner_steps out"
+                           : fmt::format("give {}: {}", counted(static_cast<std::int64_t>(kicks.size()) - 1, "number"),
+                                         kicks.size() == 2 ? "the steps of B in one of C"
+                                                           : "the steps of each kick in one of the next")),
+        {.key = "inner_steps", .value = steps.text()});
+  }
+  std::string word = claims.basic;
+  for (std::size_t k = kicks.size() - 1; k > 0; --k) {
+    if (word.size() < 3 || word.front() != kicks[k] || word.back() != kicks[k]) {
+      throw SchemeMismatch(fmt::format(
+          "method '{}' needs slow kicks at both ends of a step, but those of '{}' are the steps {}; use 'verlet'",
+          scheme.name, hamiltonian, claims.basic));
     }
+    word = word.substr(1, word.size() - 2);
+  }
+  for (std::size_t k = 1; k < kicks.size(); ++k) {
+    const std::string inner = std::exchange(word, std::string(1, kicks[k]));
+    for (int n = 0; n < steps.begin()[k - 1]; ++n) word += inner;
+    word += kicks[k];
   }
   return word;
 }
@@ -170,9 +206,16 @@ FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, co
   check_basic(claims, hamiltonian);
   check_rotor(scheme, claims, hamiltonian);
   FittedWord word{{scheme.word.begin(), scheme.word.end()}};
+  if (!options.inner_steps.empty() && !scheme.nested) {
+    throw SchemeMismatch(fmt::format("inner_steps = {} is for method 'respa', not for '{}'; take it out",
+                                     options.inner_steps.text(), scheme.name),
+                         {.key = "inner_steps", .value = options.inner_steps.text()});
+  }
   if (scheme.is_composition()) {
+    const std::string basic =
+        scheme.nested ? nested_word(scheme, claims, hamiltonian, options.inner_steps) : claims.basic;
     const bool exact = claims.inexact.find(claims.basic.front()) == std::string_view::npos;
-    word.stages = composed(scheme, claims.basic, exact);
+    word.stages = composed(scheme, basic, exact);
     word.joins = exact || scheme.substep_count == 1;
   }
   check_letters(scheme, word.stages, claims, hamiltonian, options);

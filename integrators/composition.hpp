@@ -26,7 +26,8 @@ struct FittedWord {
 };
 
 /// What a scheme becomes over a Hamiltonian: the sub-steps of a composition as steps of its basic word, and
-/// irreversible letters added where the scheme has none.
+/// irreversible letters added where the scheme has none. Of a nested scheme the basic word is that of multiple time
+/// steps: C (B A B) (B A B) C with two steps of B in one of C.
 ///
 /// Where sub-steps of a composition meet, their outer letters are joined if these are exact flows, and never if they
 /// are not: of a map of order 2 two halves are no whole. (From step to step a scheme of order 2 may join them: it stays
@@ -34,7 +35,7 @@ struct FittedWord {
 /// (`symplectic_euler_a`, `_b`) one D between them.
 /// @param options  those that made the scheme what it is (`processed`)
 /// @throws SchemeMismatch  naming the scheme and what it lacks: a letter, an exact part, quadratic kinetic energy,
-///         forward steps, Kepler arcs
+///         forward steps, Kepler arcs, a number of inner steps
 FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian,
                        const CompositionOptions& options = {});
 
@@ -172,9 +173,9 @@ template <SplitHamiltonian H> class Composition {
     std::string processing;
     if (saved.contains(prefix + "processing")) load_value(saved, prefix + "processing", processing);
     if (processing != options_.processing_text()) {
+      const std::string now = options_.processing_text();
       throw Error("the saved run has " + (processing.empty() ? "no corrector or kernel" : processing) +
-                  ", but this one has " +
-                  (options_.changes_scheme() ? options_.processing_text() : "no corrector or kernel"));
+                  ", but this one has " + (now.empty() ? "no corrector or kernel" : now));
     }
     detail::load_any(saved, prefix + "hamiltonian/", hamiltonian_);
   }

@@ -2,6 +2,7 @@
 /// What a splitting takes beside its scheme.
 
 #include "engine/description.hpp"
+#include "integrators/inner_steps.hpp"
 
 #include <array>
 #include <cstdint>
@@ -32,6 +33,7 @@ struct CompositionOptions {
   std::int64_t corrector = 0;             ///< order of the symplectic corrector; 0: none
   StepKernel kernel = StepKernel::plain;  ///< of Verlet over Kepler arcs; modified: also of `saba_n`
   bool second_corrector = false;          ///< with a kernel, beside the first one
+  InnerSteps inner_steps = {};            ///< of `respa`
 
   static constexpr auto describe() {
     return part<CompositionOptions>(
@@ -46,7 +48,10 @@ struct CompositionOptions {
                                            "saba_4; composed: in all coordinates; with a corrector the step is of "
                                            "order 4 in jacobi, 3 in democratic, 2 in others"),
         field<&CompositionOptions::second_corrector>("second_corrector", "1",
-                                                     "beside a corrector, for kernels that are not plain"));
+                                                     "beside a corrector, for kernels that are not plain"),
+        field<&CompositionOptions::inner_steps>("inner_steps", "1",
+                                                "of respa: steps of the kicks B in one of the next letter, of these in "
+                                                "one of the letter after it, and so on"));
   }
   /// Why methods for y' = f do not have an option.
   static constexpr std::string_view elsewhere(std::string_view name) {
@@ -57,7 +62,7 @@ struct CompositionOptions {
   /// The same for a scheme that is walked as its table says.
   constexpr CompositionOptions as_written() const { return {.compensated = compensated}; }
 
-  /// The changes in words, empty without any.
+  /// The changes in words, inner steps among them; empty without any.
   std::string processing_text() const;
 
   /// Refuses what does not go with constraints. @throws Error

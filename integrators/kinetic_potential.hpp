@@ -135,7 +135,8 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   /// Brings velocities back along the constraints, for flows of other letters; nothing where there are none.
   void project_velocities(ParticleSystem<Real>& s, const Real& h) { project(s, h); }
 
-  /// The fused walk: between the stages of whole steps nobody asks whether the forces are known.
+  /// The fused walk: between the stages of whole steps nobody asks whether the forces are known, but where kicks of
+  /// another letter may stand between two that nothing has moved.
   Advance run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) requires(!constrained) {
     const Real dt(s.clock().dt());
     Advance done;
@@ -149,7 +150,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
           for (Kick& kick : kicks_) kick.moved = true;
         } else {
           Kick& kick = kick_of(letter);
-          drifted ? sum(kick, s, {}) : evaluate(kick, s, {});
+          drifted&& kicks_.size() == 1 ? sum(kick, s, {}) : evaluate(kick, s, {});
           push(kick, s, weight * dt);
           count(kick);
         }
@@ -159,7 +160,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
       if (failure_) done.failure = &*failure_;
       if (failure_ || span.asked_to_stop()) break;
     }
-    if (drifted) forget();
+    if (drifted && kicks_.size() == 1) forget();
     return done;
   }
 

@@ -106,6 +106,7 @@ std::string CompositionOptions::processing_text() const {
   if (corrector != 0) add(fmt::format("corrector = {}", corrector));
   if (kernel != StepKernel::plain) add(fmt::format("kernel = \"{}\"", name_of(kernel)));
   if (second_corrector) add("second_corrector = true");
+  if (!inner_steps.empty()) add("inner_steps = " + inner_steps.text());
   return text;
 }
 
@@ -124,7 +125,7 @@ Scheme processed(const Scheme& scheme, const CompositionOptions& options) {
                     options.processing_text(), scheme.name),
         {.key = key_of(options)});
   }
-  const bool kick_first = same(scheme.word, schemes::verlet.word);
+  const bool kick_first = same(scheme.word, schemes::verlet.word) && !scheme.nested;
   if (kick_first || same(scheme.word, schemes::verlet_aba.word)) return corrected(scheme, options);
   const std::string_view remedy = options.corrector == 0 && options.kernel == StepKernel::modified
                                       ? "use 'verlet_aba', or one of 'saba_1' to 'saba_4'"

@@ -43,8 +43,10 @@ Scheme word(std::string_view letters) {
 
 std::vector<double> detail::rounded_to_double(std::span<const Stage> word) {
   std::vector<double> weights;
+  std::set<char> letters;
   for (const Stage& stage : word) weights.push_back(static_cast<double>(stage.weight));
   for (const Stage& one : word) {
+    if (!letters.insert(one.letter).second) continue;
     std::vector<std::size_t> places;
     Quad total = 0;
     for (std::size_t k = 0; k < word.size(); ++k) {

@@ -80,6 +80,7 @@ struct Scheme {
   std::string_view source = "";  ///< key of docs/references.bib
   Order order = {};
   SchemeClass scheme_class = SchemeClass::general;
+  bool nested = false;          ///< kicks of several letters stand inside each other (`InnerSteps`)
   std::string_view exact = "";  ///< letters whose maps must be exact flows, unless it is walked as sub-steps
   std::string_view rotor = "";  ///< how bodies must turn; empty: as they like
   /// First h omega on the harmonic oscillator that is unstable; NaN: it does not say.

@@ -172,7 +172,7 @@ void read_scheme_options(TableReader& reader, const Parts& parts, SceneIntegrato
         reader.fail(one.name, lacks_option(made.method, *group, one.name) + std::string(remedy));
     }
   }
-  read_fields(reader, made.composition);
+  made.composition = read_composition(reader);
   try {
     if (constrained) made.composition.check_with_constraints();
   } catch (const Error& error) {
@@ -189,9 +189,7 @@ void read_scheme_options(TableReader& reader, const Parts& parts, SceneIntegrato
 
 /// Refuses what only a splitting takes, where it is more than its default.
 void refuse_scheme_options(TableReader& reader, const SceneIntegrator& made) {
-  CompositionOptions given;
-  const CompositionOptions defaults;
-  read_fields(reader, given);
+  const CompositionOptions given = read_composition(reader), defaults;
   for_each_field<CompositionOptions>([&](const auto& field) {
     if (given.*(field.member) == defaults.*(field.member)) return;
     reader.fail(field.name,

@@ -59,6 +59,18 @@ OptionValue::Value read_option(TableReader& reader, const OptionValue& option) {
 
 }  // namespace
 
+CompositionOptions read_composition(TableReader& reader) {
+  CompositionOptions options;
+  try {
+    read_fields(reader, options);
+  } catch (const SceneError&) {
+    throw;
+  } catch (const Error& error) {
+    reader.refuse(error);
+  }
+  return options;
+}
+
 std::vector<FieldInfo> fields_of(const MethodInfo& info) {
   std::vector<FieldInfo> fields;
   const MethodOptions defaults = info.resolved({});

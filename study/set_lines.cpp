@@ -38,7 +38,7 @@ std::string all_forces(const Scene& scene, const SceneValue& hamiltonian) {
 /// Takes away what changes the scene's own scheme, and was not tried with another one.
 void leave_processing_out(const Scene& scene, std::vector<std::string>& lines) {
   const SceneValue& written = *scene.effective.find("integrator");
-  for (const char* key : {"corrector", "kernel", "second_corrector"}) {
+  for (const char* key : {"corrector", "kernel", "second_corrector", "inner_steps"}) {
     if (written.find(key) != nullptr) lines.push_back(fmt::format("integrator.{}=", key));
   }
 }

@@ -38,6 +38,14 @@ inline constexpr Scheme lie_group_variational = symmetric_composition(
      .stability_limit = 2.0},
     list(rest));
 
+inline constexpr Scheme respa = symmetric_composition(
+    {.name = "respa", .aliases = "r_respa mts",
+     .summary = "order 2: velocity Verlet in multiple time steps, with inner steps of faster forces",
+     .use = "forces that are dear and slow beside others that are cheap and fast: meshes and pairs beside bonds",
+     .source = "TuckermanBerneMartyna1992", .order = {2}, .nested = true,
+     .stability_limit = 2.0},
+    list(rest));
+
 inline constexpr Scheme verlet_aba = palindrome(
     {.name = "verlet_aba", .aliases = "position_verlet leapfrog_aba",
      .summary = "order 2, one kick: position Verlet, drift first",
@@ -55,7 +63,7 @@ inline constexpr Scheme ruth_3 = alternating(
     list(2_q / 3_q, -2_q / 3_q, 1_q));
 
 inline constexpr std::array classical_list = {
-    &symplectic_euler_a, &symplectic_euler_b, &verlet, &lie_group_variational, &verlet_aba,
+    &symplectic_euler_a, &symplectic_euler_b, &verlet, &lie_group_variational, &respa, &verlet_aba,
     &ruth_3};
 
 // clang-format on

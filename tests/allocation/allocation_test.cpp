@@ -119,6 +119,11 @@ TEST_CASE("nothing is allocated inside advance, nor by settling", "[allocation]"
     check_none(compose(WisdomHolman<double, Oblateness>({.G = G}, {.J2 = 1e-7, .radius = 0.005}), schemes::verlet_aba,
                        {.corrector = 17, .kernel = kernel}));
   }
+  ForceField slow;
+  slow.add(UniformField{.acceleration = {1e-9, 0, 0}}).add(AnyForce<double>(Gravity{.G = G}).in_kick('C'));
+  const AnyHamiltonian<double> nested(KineticPotential<ForceField<double>>{slow});
+  for (const bool compensated : {false, true})
+    check_none(compose(nested, schemes::respa, {.compensated = compensated, .inner_steps = {3}}));
   check_none(compose(Damped(KineticPotential(Gravity{.G = G}), {.rate = 1e-6}), schemes::verlet));
   const Langevin bath(KineticPotential(Gravity{.G = G}), {.temperature = 300, .friction = 1e-6});
   for (const char* letters : {"BAOAB", "OBABO"}) check_none(compose(bath, word(letters)));

@@ -80,6 +80,36 @@ std::vector<Twin> force_twins() {
                      scene + "[[hamiltonian.force]]\ntype='linear_drag'\nrate=0.2\n", "verlet")};
 }
 
+/// Multiple time steps of three kicks, with gravity in the slowest one, and in a bath.
+std::vector<Twin> nested_twins() {
+  const auto in_kick = [](AnyForce<double> force, char letter) { return force.in_kick(letter); };
+  const ForceField<double> forces = test::field_of(in_kick(Gravity{.G = 1, .softening = 0.05}, 'E'),
+                                                   HarmonicField{.k = 3}, in_kick(HarmonicField{.k = 0.3}, 'C'));
+  const std::string scene =
+      "[hamiltonian]\ntype='kinetic_potential'\nG=1\n"
+      "[[hamiltonian.force]]\ntype='gravity'\nsoftening=0.05\nkick='E'\n"
+      "[[hamiltonian.force]]\ntype='harmonic_field'\nk=3\n"
+      "[[hamiltonian.force]]\ntype='harmonic_field'\nk=0.3\nkick='C'\n";
+  std::vector<Twin> twins;
+  for (const bool compensated : {false, true}) {
+    const CompositionOptions options{.compensated = compensated, .inner_steps = {3, 2}};
+    twins.push_back({.name = "multiple time steps",
+                     .bodies = test::cloud(300),
+                     .program = compose(test::kinetic_potential_over(forces), schemes::respa, options),
+                     .step = 0.02,
+                     .hamiltonian = scene,
+                     .method = "respa",
+                     .options = options});
+  }
+  Twin warm = twins.front();
+  warm.name += " in a bath";
+  warm.program = compose(test::in_bath(forces, {.temperature = 0.1, .friction = 1, .seed = 4}), schemes::respa,
+                         {.inner_steps = {3, 2}});
+  warm.hamiltonian += "[hamiltonian.thermostat]\ntype='langevin'\ntemperature=0.1\nfriction=1\nseed=4\n";
+  twins.push_back(std::move(warm));
+  return twins;
+}
+
 std::vector<Twin> wisdom_holman_twins(Coordinates coordinates) {
   std::string in;
   for (const auto& [value, name] : EnumNames<Coordinates>::values) in = value == coordinates ? name : in;
@@ -343,9 +373,9 @@ std::vector<Twin> exact_energy_twins() {
 
 void check_all_twins(std::size_t stride) {
   for (const auto& twins :
-       {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), projected_twins(), turning_twins(),
-        sheet_twins(), rigid_twins(), two_word_twins(), charged_twins(), exact_energy_twins(), corrected_twins(),
-        wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
+       {gravity_twins(), force_twins(), nested_twins(), liquid_twins(), decorated_twins(), projected_twins(),
+        turning_twins(), sheet_twins(), rigid_twins(), two_word_twins(), charged_twins(), exact_energy_twins(),
+        corrected_twins(), wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
         wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);
   }

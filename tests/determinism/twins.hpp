@@ -61,8 +61,9 @@ inline Parts parts_of_twins() {
 inline std::string keys_of(const CompositionOptions& options) {
   std::string kernel;
   for (const auto& [value, name] : EnumNames<StepKernel>::values) kernel = value == options.kernel ? name : kernel;
-  return fmt::format("compensated={}\ncorrector={}\nkernel='{}'\nsecond_corrector={}\n", options.compensated,
-                     options.corrector, kernel, options.second_corrector);
+  const std::string inner = options.inner_steps.empty() ? "" : "inner_steps=" + options.inner_steps.text() + "\n";
+  return fmt::format("compensated={}\ncorrector={}\nkernel='{}'\nsecond_corrector={}\n{}", options.compensated,
+                     options.corrector, kernel, options.second_corrector, inner);
 }
 
 inline Simulation<double> simulation_of(const Twin& twin, const Way& way) {
