@@ -18,14 +18,14 @@ struct ChosenMesh {
   ParticleMeshEwald part;
   Vec3<double> edges = Vec3<double>::Zero();
   Index charged = 0;
-  double coulomb_constant = 0;
   detail::MeshLayout layout;
-  detail::ChargeMesh mesh;
+  detail::ChargeTiles tiles;
+  detail::ChargeMesh<double> mesh;
 
   bool is_for(const ParticleMeshEwald& other, const ParticleSystem<double>& s, Index count) const {
-    return edges == s.box().edges() && charged == count && coulomb_constant == s.units().coulomb_constant &&
-           part.cutoff == other.cutoff && part.relative_error == other.relative_error && part.order == other.order &&
-           part.alpha == other.alpha && part.mesh_spacing == other.mesh_spacing;
+    return edges == s.box().edges() && charged == count && part.cutoff == other.cutoff &&
+           part.relative_error == other.relative_error && part.order == other.order && part.alpha == other.alpha &&
+           part.mesh_spacing == other.mesh_spacing;
   }
 };
 
@@ -62,8 +62,7 @@ detail::MeshLayout ParticleMeshEwald::layout_for(const ParticleSystem<double>& s
   const double each = relative_error / std::sqrt(2.0);  // near part and waves have independent errors
   detail::MeshLayout layout{.order = static_cast<int>(order),
                             .alpha = alpha.value_or(errors.alpha_for(each, cutoff)),
-                            .edges = s.box().edges(),
-                            .coulomb_constant = s.units().coulomb_constant};
+                            .edges = s.box().edges()};
   const double neighbor = std::cbrt(s.box().volume() / static_cast<double>(charged));
   const double spacing = mesh_spacing.value_or(detail::spacing_for(each, layout.alpha, layout.order, neighbor));
   for (std::size_t k = 0; k < 3; ++k) {
@@ -82,28 +81,22 @@ void ParticleMeshEwald::add_to(ForceSink<double>& out, const ParticleSystem<doub
     own.part = *this;
     own.edges = s.box().edges();
     own.charged = sums.charged;
-    own.coulomb_constant = s.units().coulomb_constant;
+    own.mesh.lay(own.layout);
+    own.tiles.lay(own.layout.points, own.layout.order - 1, s.size());
   }
   PairForce<detail::ScreenedCharges>{{own.layout.alpha, cutoff}}.add_to(out, s);
   detail::add_self_energy(out, s, sums, own.layout.alpha);
   detail::add_smooth_pairs(out, s, own.layout.alpha);
   const double* const q = s.column<Charge>().data();
   const double strongest = std::sqrt(detail::strongest_product(s) / s.units().coulomb_constant);
-  const double unit = std::ldexp(1.0, std::ilogb(strongest * static_cast<double>(s.size())) + 2 - 61);
+  own.tiles.sort(s, q);
   const bool all = out.wants_energy() || out.wants_virial();
-  own.mesh.lay(own.layout);
-  own.mesh.spread(s, q, unit);
-  own.mesh.solve(all);
-  VectorColumn<double>& a = out.accelerations();
-  for_blocks(s.size(), [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) {
-      if (q[i] == 0 || s.masses()[i] == 0) continue;
-      a.add(i, -q[i] / s.masses()[i] * own.mesh.slope_at(s.positions()[i]));
-    }
-  });
+  detail::MeshSums waves;
+  own.mesh.solve(own.tiles, strongest, s.units().coulomb_constant, all ? &waves : nullptr);
+  own.mesh.add_accelerations(out.accelerations(), s, own.tiles);
   if (!all) return;
-  out.energy(own.mesh.energy());
-  out.virial(own.mesh.virial());
+  out.energy(waves.energy);
+  out.virial(waves.virial);
 }
 
 Ewald ParticleMeshEwald::reference() const {
