@@ -10,6 +10,7 @@ is absent, its rows are left out with a word.
 """
 
 import gc
+import math
 import os
 import resource
 import statistics
@@ -127,7 +128,7 @@ def functions(nt):
         @numba.cfunc(nt.force_signature())
         def gravity(n, stride, t, x, v, m, a, user):
             dx, dy, dz = x[1] - x[0], x[1 + stride] - x[stride], x[1 + 2 * stride] - x[2 * stride]
-            r = (dx * dx + dy * dy + dz * dz)**0.5
+            r = math.sqrt(dx * dx + dy * dy + dz * dz)
             w = 1.0 / (r * r * r)
             a[0], a[stride], a[2 * stride] = m[1] * w * dx, m[1] * w * dy, m[1] * w * dz
             a[1], a[1 + stride], a[1 + 2 * stride] = -m[0] * w * dx, -m[0] * w * dy, -m[0] * w * dz

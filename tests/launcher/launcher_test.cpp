@@ -368,6 +368,17 @@ chmod +x "${!#}"/bin/*
   CHECK(has(checkout.calls(), "pip install --disable-pip-version-check "));
   CHECK(has(checkout.calls(), with + "\nninja test_io\n"));
 
+  // The whole suite has tests of the package, which use more; what cannot be had is named, and asked for again after a
+  // day.
+  const ProcessResult lacking = checkout.launch("test", {"OFFLINE=1"});
+  CHECK(has(lacking.err, "noether: tests that need matplotlib pandas "));
+  CHECK_FALSE(has(checkout.launch("test").err, "matplotlib"));
+  fs::last_write_time(checkout.tree("build/python/.peers"), fs::file_time_type::clock::now() - std::chrono::hours(25));
+  CHECK(
+      has(checkout.launch("test").err, "noether: installing what tests of the Python package use: matplotlib pandas "));
+  CHECK(has(checkout.calls(), " --timeout 15 matplotlib pandas "));
+  CHECK_FALSE(has(checkout.launch("test").err, "matplotlib"));
+
   fs::remove(checkout.path() / "calls");
   const std::string without = "cmake --preset release -DNOETHER_PYTHON:BOOL=OFF\nninja test_io\n";
   CHECK(checkout.launch("test io", {"NOETHER_PYTHON=OFF"}).exit_code == 0);

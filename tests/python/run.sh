@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs tests/python by pytest, with the Python package of a build folder.
 #     run.sh BUILD_FOLDER [PYTHON]      without a Python the package was not built
+# NOETHER_NIGHTLY=1 in the environment adds all notebooks, and the peers' scripts beside ours.
 set -eu
 build=$1 python=${2:-}
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -15,4 +16,4 @@ for module in numpy h5py pytest; do
   }
 done
 export PYTHONPATH=$build/python NOETHER_PROGRAM=$build/cli/noether PYTHONDONTWRITEBYTECODE=1
-exec "$python" -m pytest -q -p no:cacheprovider --durations=5 tests/python
+exec "$python" -m pytest -q -rs -p no:cacheprovider --durations=5 tests/python
