@@ -9,6 +9,7 @@
 #include "numbers/members.hpp"
 #include "numbers/pack.hpp"
 
+#include <algorithm>
 #include <concepts>
 #include <memory>
 #include <optional>
@@ -191,11 +192,22 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
   NOETHER_FORCE_SEAM(NOETHER_SEAM_CALL, NOETHER_SEAM_CALL)
   ForceClaims claims() const {
     ForceClaims claims = this->own_claims();
-    if (kick_letter_ != 0) claims.kicks = kick_letter_;
+    if (kick_letter_ != 0) {
+      claims.kicks = kick_letter_ + (claims.kicks.empty() ? std::string() : claims.kicks.substr(1));
+      std::sort(claims.kicks.begin(), claims.kicks.end());
+    }
     return claims;
   }
-  /// Takes part in the kicks of another letter than the force itself says, as multiple time steps want it.
+  /// Takes part in the kicks of another letter than the force itself says, as multiple time steps want it; of one that
+  /// takes part in several, instead of in the first.
+  /// @throws Error  if it takes part in those with another of its parts
   AnyForce& in_kick(char letter) {
+    const std::string own = this->own_claims().kicks;
+    if (own.size() > 1 && own.find(letter, 1) != std::string::npos) {
+      throw Error("kick = \"" + std::string(1, letter) + "\" is already that of another part of " + this->name() +
+                      "; take one of the two out",
+                  {.key = "kick", .value = "\"" + std::string(1, letter) + "\""});
+    }
     kick_letter_ = letter;
     return *this;
   }

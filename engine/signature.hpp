@@ -50,8 +50,11 @@ template <class T> std::string signature_of(const T& value) {
     for_each_field<T>([&](const auto& field) {
       const auto& given = value.*(field.member);
       using Plain = typename optional_value<std::decay_t<decltype(given)>>::type;
-      if constexpr (std::is_enum_v<Plain> && !std::is_same_v<Plain, std::decay_t<decltype(given)>>) {
+      constexpr bool may_lack = !std::is_same_v<Plain, std::decay_t<decltype(given)>>;
+      if constexpr (std::is_enum_v<Plain> && may_lack) {
         if (given) add_field_text(fields, field.name, value_text(*given));  // runs from before there was a choice go on
+      } else if constexpr (std::is_same_v<Plain, std::string> && may_lack) {
+        if (given) add_field_text(fields, field.name, *given);
       } else {
         add_field_text(fields, field.name, value_text(given));
       }

@@ -45,6 +45,7 @@ double wave_count(double wave_number, double volume) {  // half a ball, of which
 
 void Ewald::check() const {
   detail::check_split(cutoff, relative_error, alpha);
+  detail::check_wave_kick(wave_kick);
   if (kmax && !(*kmax >= 0 && *kmax < 1e100))
     refuse_field("kmax", *kmax, "is not a valid wave number; 0 or more is expected");
 }

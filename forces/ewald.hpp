@@ -5,8 +5,10 @@
 #include "forces/coulomb.hpp"
 #include "forces/ewald_split.hpp"
 #include "forces/lattice_waves.hpp"
+#include "numbers/cost_book.hpp"
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace noether {
@@ -16,16 +18,19 @@ namespace noether {
 ///     U = sum_{i<j, r < cutoff} C q_i q_j erfc(alpha r)/r + (2 pi C / V) sum_{0 < |k| < kmax} exp(-k^2/4 alpha^2)/k^2
 ///         |sum_i q_i exp(i k.x_i)|^2 - C alpha/sqrt(pi) sum q_i^2 - pi C/(2 V alpha^2) (sum q_i)^2
 ///
-/// Excluded pairs and scaled ones are those of nearest images. Unless they are given, alpha and kmax follow from the
-/// cutoff and the error asked for (`SplitErrors`), and from how many charges there are in the box. Of doubles the sums
-/// over particles are counted in whole units: bits depend on no thread, and on no order of particles.
+/// Excluded pairs and scaled ones are those of nearest images. The waves may kick by a letter of their own
+/// (`wave_kick`), with what is taken out of them: without that they would change as fast as the bonds of excluded
+/// pairs. Unless they are given, alpha and kmax follow from the cutoff and the error asked for (`SplitErrors`), and
+/// from how many charges there are in the box. Of doubles the sums over particles are counted in whole units: bits
+/// depend on no thread, and on no order of particles.
 /// @cost O(n^(3/2)) if the cutoff grows with the box; a sum over all waves for each particle
 /// @source Ewald1921, KolafaPerram1992
 struct Ewald {
-  double cutoff = 0;                 ///< of the near part [length]
-  double relative_error = 1e-5;      ///< asked of forces
-  std::optional<double> alpha = {};  ///< [1/length]
-  std::optional<double> kmax = {};   ///< [1/length]
+  double cutoff = 0;                          ///< of the near part [length]
+  double relative_error = 1e-5;               ///< asked of forces
+  std::optional<double> alpha = {};           ///< [1/length]
+  std::optional<double> kmax = {};            ///< [1/length]
+  std::optional<std::string> wave_kick = {};  ///< letter of the kicks by the waves; empty: that of the near part
 
   static constexpr auto describe() {
     return part<Ewald>(
@@ -39,11 +44,19 @@ struct Ewald {
                                       "root mean square error of forces, of that between two typical charges as far "
                                       "apart as neighbors: C <q^2> (n/V)^(2/3)"),
         field<&Ewald::alpha>("alpha", "1/length", "where 1/r is split; default: from cutoff and relative_error"),
-        field<&Ewald::kmax>("kmax", "1/length", "largest wave number; default: from alpha and relative_error"));
+        field<&Ewald::kmax>("kmax", "1/length", "largest wave number; default: from alpha and relative_error"),
+        field<&Ewald::wave_kick>("wave_kick", "1",
+                                 "letter of the kicks by the waves, for multiple time steps; default: that of the near "
+                                 "part"));
   }
   static constexpr std::string_view only_once = detail::charges_once;
   ForceClaims claims() const {
-    return {.keeps_angular_momentum = false, .periodic = true, .charges = true, .exclusions = true, .range = cutoff};
+    return {.keeps_angular_momentum = false,
+            .periodic = true,
+            .charges = true,
+            .exclusions = true,
+            .kicks = detail::kicks_of_split(wave_kick),
+            .range = cutoff};
   }
   /// @throws Error  for a cutoff, an error, an alpha or a wave number that are none
   void check() const;
@@ -60,7 +73,10 @@ struct Ewald {
     const detail::ChargeSums<Real> sums = detail::charge_sums(s);
     if (sums.charged == 0) return;
     const Ewald chosen = chosen_for(s.box(), sums.charged);
-    PairForce<detail::ScreenedCharges>{{*chosen.alpha, cutoff}}.add_to(out, s);
+    const detail::SplitParts wanted = detail::wanted_parts(out, wave_kick);
+    if (wanted.near) PairForce<detail::ScreenedCharges>{{*chosen.alpha, cutoff}}.add_to(out, s);
+    if (!wanted.waves) return;
+    const Spent spent("force", "ewald waves");
     detail::add_self_energy(out, s, sums, *chosen.alpha);
     detail::add_smooth_pairs(out, s, *chosen.alpha);
     chosen.add_waves(out, s);

@@ -46,6 +46,14 @@ void check_split(double cutoff, double relative_error, const std::optional<doubl
     refuse_field("alpha", *alpha, "is not a valid inverse width; a number above 0 is expected");
 }
 
+std::string kicks_of_split(const std::optional<std::string>& wave_kick) { return "B" + wave_kick.value_or(""); }
+
+void check_wave_kick(const std::optional<std::string>& wave_kick) {
+  if (!wave_kick || (wave_kick->size() == 1 && wave_kick->front() >= 'C' && wave_kick->front() <= 'Z')) return;
+  refuse_field("wave_kick", "\"" + *wave_kick + "\"",
+               "is not a letter of slow kicks; one from C to Z is expected, such as \"C\"");
+}
+
 template <> void add_smooth_pairs(ForceSink<double>& out, const ParticleSystem<double>& s, double alpha) {
   if (s.topology() == nullptr) return;
   constexpr int bits = 48;  // below the largest force of a pair: 2^15 pairs of a particle are safe

@@ -12,6 +12,8 @@
 #include "numbers/exact_sum.hpp"
 
 #include <cmath>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace noether::detail {
@@ -147,6 +149,20 @@ class SplitErrors {
  private:
   double a_;
 };
+
+/// Which parts of a sum are wanted, where the waves may have kicks of their own.
+struct SplitParts {
+  bool near, waves;
+};
+template <class Real> SplitParts wanted_parts(const ForceSink<Real>& out, const std::optional<std::string>& wave_kick) {
+  if (out.takes_all() || !wave_kick) return {true, true};
+  const bool waves = out.takes(*wave_kick);
+  return {!waves, waves};
+}
+/// Letters of the kicks of a sum.
+std::string kicks_of_split(const std::optional<std::string>& wave_kick);
+/// @throws Error  for what is no letter of slow kicks
+void check_wave_kick(const std::optional<std::string>& wave_kick);
 
 /// @throws Error  for open space, or particles without charges
 void check_lattice(bool periodic, bool charges, std::string_view name);

@@ -33,6 +33,7 @@ struct ChosenMesh {
 
 void ParticleMeshEwald::check() const {
   detail::check_split(cutoff, relative_error, alpha);
+  detail::check_wave_kick(wave_kick);
   if (order < detail::least_order || order > detail::largest_order) {
     refuse_field("order", std::to_string(order),
                  fmt::format("is not a valid order of splines; {} to {} is expected", detail::least_order,
@@ -84,7 +85,10 @@ void ParticleMeshEwald::add_to(ForceSink<double>& out, const ParticleSystem<doub
     own.mesh.lay(own.layout);
     own.tiles.lay(own.layout.points, own.layout.order - 1, s.size());
   }
-  PairForce<detail::ScreenedCharges>{{own.layout.alpha, cutoff}}.add_to(out, s);
+  const detail::SplitParts wanted = detail::wanted_parts(out, wave_kick);
+  if (wanted.near) PairForce<detail::ScreenedCharges>{{own.layout.alpha, cutoff}}.add_to(out, s);
+  if (!wanted.waves) return;
+  const Spent spent("force", "particle_mesh_ewald waves");
   detail::add_self_energy(out, s, sums, own.layout.alpha);
   detail::add_smooth_pairs(out, s, own.layout.alpha);
   const double* const q = s.column<Charge>().data();
@@ -100,7 +104,8 @@ void ParticleMeshEwald::add_to(ForceSink<double>& out, const ParticleSystem<doub
 }
 
 Ewald ParticleMeshEwald::reference() const {
-  return Ewald{.cutoff = cutoff, .relative_error = std::min(relative_error, 1e-13), .alpha = alpha};
+  return Ewald{
+      .cutoff = cutoff, .relative_error = std::min(relative_error, 1e-13), .alpha = alpha, .wave_kick = wave_kick};
 }
 
 template struct detail::ForceModel<ParticleMeshEwald, double>;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace noether {
@@ -16,17 +17,19 @@ struct MeshLayout;
 /// Ewald's sum with its waves on a mesh: charges are spread by B-splines, transformed, and the potential is gathered by
 /// the same splines, so that forces are exact slopes of the energy of the mesh. Their sum is not exactly 0.
 ///
-/// What is not of the waves is that of Ewald. Unless they are given, alpha and the spacing of the mesh follow from the
-/// cutoff, the order and the error asked for (`SplitErrors`, `mesh_error`). Charges are spread in whole units: bits
-/// depend on no thread, and on no order of particles. In 113 bits it is Ewald's sum itself.
+/// What is not of the waves is that of Ewald, their kicks and what goes with them too. Unless they are given, alpha and
+/// the spacing of the mesh follow from the cutoff, the order and the error asked for (`SplitErrors`, `mesh_error`).
+/// Charges are spread in whole units: bits depend on no thread, and on no order of particles. In 113 bits it is Ewald's
+/// sum itself.
 /// @cost O(n) at a given density, and the transforms: O(n log n)
 /// @source EssmannPereraBerkowitzDardenLeePedersen1995, KolafaPerram1992
 struct ParticleMeshEwald {
-  double cutoff = 0;                        ///< of the near part [length]
-  double relative_error = 1e-5;             ///< asked of forces
-  std::int64_t order = 6;                   ///< of the splines
-  std::optional<double> alpha = {};         ///< [1/length]
-  std::optional<double> mesh_spacing = {};  ///< [length]
+  double cutoff = 0;                          ///< of the near part [length]
+  double relative_error = 1e-5;               ///< asked of forces
+  std::int64_t order = 6;                     ///< of the splines
+  std::optional<double> alpha = {};           ///< [1/length]
+  std::optional<double> mesh_spacing = {};    ///< [length]
+  std::optional<std::string> wave_kick = {};  ///< letter of the kicks by the waves; empty: that of the near part
 
   static constexpr auto describe() {
     return part<ParticleMeshEwald>(
@@ -44,7 +47,11 @@ struct ParticleMeshEwald {
                                          "where 1/r is split; default: from cutoff and relative_error"),
         field<&ParticleMeshEwald::mesh_spacing>("mesh_spacing", "length",
                                                 "widest distance of the points of the mesh; default: from alpha, order "
-                                                "and relative_error"));
+                                                "and relative_error"),
+        field<&ParticleMeshEwald::wave_kick>(
+            "wave_kick", "1",
+            "letter of the kicks by the waves, for multiple time steps; default: that of the near "
+            "part"));
   }
   static constexpr std::string_view only_once = detail::charges_once;
   ForceClaims claims() const {
@@ -53,6 +60,7 @@ struct ParticleMeshEwald {
             .periodic = true,
             .charges = true,
             .exclusions = true,
+            .kicks = detail::kicks_of_split(wave_kick),
             .range = cutoff};
   }
   /// @throws Error  for a cutoff, an error, an order, an alpha or a spacing that are none

@@ -69,7 +69,11 @@ void set_kick(TableReader& reader, SceneForce& force) {
                             "\"C\"",
                             kick));
   }
-  force.force.in_kick(kick[0]);
+  try {
+    force.force.in_kick(kick[0]);
+  } catch (const Error& error) {
+    reader.refuse(error);
+  }
 }
 
 void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
