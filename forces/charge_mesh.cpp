@@ -140,7 +140,7 @@ template <class T> struct ChargeMesh<T>::Memory {
   MeshMemory<T> view{};
   AlignedVector<Whole> counts;
   AlignedVector<T> potential, waves, influence;
-  std::array<AlignedVector<double>, 3> wave_numbers;
+  std::array<AlignedVector<double>, 3> wave_numbers, odd_numbers;
   std::array<std::vector<std::ptrdiff_t>, 2> begins;  ///< of planes, of rows of a plane
   std::array<FourierPlan<T>, 3> plans;
   SplineCoefficients<T> splines;
@@ -185,6 +185,7 @@ template <class T> void ChargeMesh<T>::Memory::lay_memory() {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     plans[axis].make(layout.points[axis]);
     wave_numbers[axis].assign(static_cast<std::size_t>(padded(layout.points[axis])), 0);
+    odd_numbers[axis] = wave_numbers[axis];
   }
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const std::int64_t along = layout.points[axis], stride = axis == 0 ? view.rows * view.row : view.row;
@@ -201,6 +202,9 @@ template <class T> void ChargeMesh<T>::Memory::lay_memory() {
   view.kx = wave_numbers[0].data();
   view.ky = wave_numbers[1].data();
   view.kz = wave_numbers[2].data();
+  view.odd_x = odd_numbers[0].data();
+  view.odd_y = odd_numbers[1].data();
+  view.odd_z = odd_numbers[2].data();
   view.planes = begins[0].data();
   view.lines = begins[1].data();
   view.values = splines.values.data();
@@ -223,6 +227,7 @@ template <class T> void ChargeMesh<T>::Memory::lay_influence() {
       const auto at = static_cast<std::size_t>(m);
       const double k = wave_number(m, points, edges[static_cast<Index>(axis)]);
       wave_numbers[axis][at] = k;
+      odd_numbers[axis][at] = 2 * m == points ? 0 : k;
       factors[axis][at] *= std::exp(-k * k / (4 * layout.alpha * layout.alpha));
     }
   }

@@ -230,13 +230,14 @@ struct PlaneSums {
     const auto over = hn::IfThenElseZero(hn::Gt(k2, hn::Zero(d)), hn::Div(hn::Set(d, 2.0), k2));
     energy = hn::Add(energy, e);
     const auto weight = hn::Mul(e, hn::Add(over, hn::Set(d, inverse)));
-    const auto x = hn::Mul(weight, kx), by_y = hn::Mul(weight, ky), by_z = hn::Mul(weight, kz);
-    moments[0] = hn::MulAdd(x, kx, moments[0]);
-    moments[1] = hn::MulAdd(by_y, ky, moments[1]);
-    moments[2] = hn::MulAdd(by_z, kz, moments[2]);
-    moments[3] = hn::MulAdd(x, ky, moments[3]);
-    moments[4] = hn::MulAdd(x, kz, moments[4]);
-    moments[5] = hn::MulAdd(by_y, kz, moments[5]);
+    const auto odd_x = hn::Mul(weight, hn::Set(d, mesh.odd_x[plane])), odd_y = hn::LoadU(d, mesh.odd_y + y);
+    const auto odd_z = hn::Set(d, mesh.odd_z[z]);
+    moments[0] = hn::MulAdd(hn::Mul(weight, kx), kx, moments[0]);
+    moments[1] = hn::MulAdd(hn::Mul(weight, ky), ky, moments[1]);
+    moments[2] = hn::MulAdd(hn::Mul(weight, kz), kz, moments[2]);
+    moments[3] = hn::MulAdd(odd_x, odd_y, moments[3]);
+    moments[4] = hn::MulAdd(odd_x, odd_z, moments[4]);
+    moments[5] = hn::MulAdd(hn::Mul(weight, odd_y), odd_z, moments[5]);
   }
   void total(WaveSums& sums) const {
     const FourierTag<double> d;

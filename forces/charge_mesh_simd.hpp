@@ -27,6 +27,7 @@ template <class T> struct MeshMemory {
   T* waves;                              ///< shape (nx/2 + 1, 2, wave_rows, wave_row): real parts of a plane first
   const T* influence;                    ///< shape (nx/2 + 1, wave_rows/8, nz, 8), lanes along y; 0 in the padding
   const double *kx, *ky, *kz;            ///< wave numbers, ky also in the padding
+  const double *odd_x, *odd_y, *odd_z;   ///< the same, 0 for a wave that stands for its opposite too
   const std::ptrdiff_t *planes, *lines;  ///< where plane x and row y begin, for x and y beyond the end too
   const T *values, *slopes;              ///< coefficients of the splines, shape (power, 8)
   FourierPasses<T> x, y, z;
@@ -34,8 +35,8 @@ template <class T> struct MeshMemory {
   T half_count;          ///< half of what a count stands for
 };
 
-/// Of one plane of waves k: sums of e = D |q_k|^2, and of (2/k^2 + 1/(2 alpha^2)) e times kx kx, ky ky, kz kz, kx ky,
-/// kx kz, ky kz.
+/// Of one plane of waves k: sums of e = D |q_k|^2, and of (2/k^2 + 1/(2 alpha^2)) e times kx kx, ky ky, kz kz, and
+/// odd_x odd_y, odd_x odd_z, odd_y odd_z.
 struct WaveSums {
   double energy, moments[6];
 };

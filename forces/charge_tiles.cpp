@@ -27,20 +27,24 @@ Index shares_of(Index particles) { return particles < parallel_threshold ? 1 : 1
 
 }  // namespace
 
-void ChargeTiles::lay(const std::array<std::int64_t, 3>& points, int reach, Index particles) {
+void ChargeTiles::lay(const std::array<std::int64_t, 3>& points, int reach, Index charges) {
   points_ = points;
-  const auto enough = static_cast<Index>(std::sqrt(static_cast<double>(particles)) / 2) + 1;
+  const auto enough = static_cast<Index>(std::sqrt(static_cast<double>(charges)) / 2) + 1;
+  const auto divide = [](std::vector<Index>& at, std::int64_t cells, Index parts) {
+    at.resize(static_cast<std::size_t>(cells));
+    for (std::int64_t cell = 0; cell < cells; ++cell) at[static_cast<std::size_t>(cell)] = cell * parts / cells;
+  };
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    const Index pairs = std::min({points[axis] / (2 * reach), most_tiles / 2, enough});
-    tiles_[axis] = std::max<Index>(1, 2 * pairs);
-    tile_at_[axis].resize(static_cast<std::size_t>(points[axis]));
-    for (std::int64_t cell = 0; cell < points[axis]; ++cell)
-      tile_at_[axis][static_cast<std::size_t>(cell)] = cell * tiles_[axis] / points[axis];
+    tiles_[axis] = std::max<Index>(1, 2 * std::min({points[axis] / (2 * reach), most_tiles / 2, enough}));
+    divide(tile_at_[axis], points[axis], tiles_[axis]);
   }
   for (Index& line : tile_at_[0]) line *= tiles_[1];
+  layers_ = std::max<Index>(1, std::min({points[2] / reach, most_tiles, 2 * enough}));
+  divide(layer_at_, points[2], layers_);
   const auto all = static_cast<std::size_t>(tiles_[0] * tiles_[1]);
   begins_.assign(all + 1, 0);
-  counts_.assign(all * static_cast<std::size_t>(shares_of(particles)), 0);
+  counts_.assign(all * static_cast<std::size_t>(shares_of(charges)), 0);
+  together_.assign(all * static_cast<std::size_t>(layers_), 0);
 }
 
 void ChargeTiles::sort(const ParticleSystem<double>& s, const double* charges) {
@@ -90,17 +94,31 @@ void ChargeTiles::sort(const ParticleSystem<double>& s, const double* charges) {
 
 void ChargeTiles::count_together() {
   const auto [nx, ny] = tiles_;
+  Index* const together = together_.data();
+  for_blocks(nx * ny * block_size, [&](Index task, Index /*end*/) {  // in a layer of a tile and in the one above it
+    const Index tile = task / block_size;
+    Index* const counts = together + tile * layers_;
+    std::fill_n(counts, layers_, Index(0));
+    for (Index k = begin(tile); k < begin(tile + 1); ++k)
+      ++counts[layer_at_[static_cast<std::size_t>(places_[static_cast<std::size_t>(k)].z)]];
+    if (layers_ == 1) return;
+    const Index first = counts[0];
+    for (Index layer = 0; layer < layers_; ++layer) {
+      const Index above_count = layer + 1 < layers_ ? counts[layer + 1] : first;
+      counts[layer] += above_count;
+    }
+  });
   most_together_ = 0;
   for (Index x = 0; x < nx; ++x) {
-    for (Index y = 0; y < ny; ++y) {  // a tile, and those after it
-      Index count = 0;
-      for (Index a = 0; a < std::min<Index>(nx, 2); ++a) {
-        for (Index b = 0; b < std::min<Index>(ny, 2); ++b) {
-          const Index tile = (x + a) % nx * ny + (y + b) % ny, own_count = begin(tile + 1) - begin(tile);
-          count += own_count;
-        }
+    for (Index y = 0; y < ny; ++y) {
+      const Index next_x = (x + 1) % nx, next_y = (y + 1) % ny, in_x = nx > 1 ? 1 : 0, in_y = ny > 1 ? 1 : 0;
+      const auto layers_of = [&](Index tile) { return together + tile * layers_; };
+      const Index *const here = layers_of(x * ny + y), *const beside = layers_of(x * ny + next_y);
+      const Index *const behind = layers_of(next_x * ny + y), *const across = layers_of(next_x * ny + next_y);
+      for (Index layer = 0; layer < layers_; ++layer) {
+        const Index both = behind[layer] + in_y * across[layer];
+        most_together_ = std::max(most_together_, here[layer] + in_y * beside[layer] + in_x * both);
       }
-      most_together_ = std::max(most_together_, count);
     }
   }
 }

@@ -16,8 +16,8 @@ namespace noether::detail {
 /// axes never meet at a point. The number of tiles along an axis is even, or 1.
 class ChargeTiles {
  public:
-  /// @param points  of the mesh @param reach  of a spline beyond its cell @param particles  roughly how many
-  void lay(const std::array<std::int64_t, 3>& points, int reach, Index particles);
+  /// @param points  of the mesh @param reach  of a spline beyond its cell @param charges  how many there are
+  void lay(const std::array<std::int64_t, 3>& points, int reach, Index charges);
   /// Sorts the particles with a charge.
   void sort(const ParticleSystem<double>& s, const double* charges);
 
@@ -42,6 +42,9 @@ class ChargeTiles {
   std::vector<Index> begins_;
   std::vector<Index> at_;  ///< of every particle, while they are sorted its tile
   std::vector<MeshPlace> places_;
+  std::vector<Index> layer_at_,
+      together_;  ///< layers of tiles by cells along z; charges in them, shape (tiles, layers)
+  Index layers_ = 1;
   Index most_together_ = 0;
 };
 

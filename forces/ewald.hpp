@@ -4,6 +4,7 @@
 #include "engine/any_force.hpp"
 #include "forces/coulomb.hpp"
 #include "forces/ewald_split.hpp"
+#include "forces/known_charges.hpp"
 #include "forces/lattice_waves.hpp"
 #include "numbers/cost_book.hpp"
 
@@ -70,7 +71,8 @@ struct Ewald {
   template <class Real>
     requires(!std::is_same_v<Real, Pack>)
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-    const detail::ChargeSums<Real> sums = detail::charge_sums(s);
+    const auto& known = detail::KnownCharges<Real>::of(out.workspace(), s);
+    const detail::ChargeSums<Real>& sums = known.sums;
     if (sums.charged == 0) return;
     const Ewald chosen = chosen_for(s.box(), sums.charged);
     const detail::SplitParts wanted = detail::wanted_parts(out, wave_kick);
@@ -79,7 +81,7 @@ struct Ewald {
     const Spent spent("force", "ewald waves");
     detail::add_self_energy(out, s, sums, *chosen.alpha);
     detail::add_smooth_pairs(out, s, *chosen.alpha);
-    chosen.add_waves(out, s);
+    chosen.add_waves(out, s, known.strongest);
   }
 
   /// The same with alpha and kmax as it takes them for so many charges in a box.
@@ -89,16 +91,16 @@ struct Ewald {
 
  private:
   void check_waves(const Box& box, Index charged) const;
-  template <class Real> void add_waves(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
+  template <class Real> void add_waves(ForceSink<Real>& out, const ParticleSystem<Real>& s, double strongest) const;
 };
 
 namespace detail {
 
-/// Tables of cosines and sines for waves up to `most` along each axis.
-template <class Real> WaveTables<Real> wave_tables(const ParticleSystem<Real>& s, const std::array<int, 3>& most) {
+/// Fills tables of cosines and sines for waves up to `most` along each axis.
+template <class Real>
+void fill_wave_tables(WaveTables<Real>& tables, const ParticleSystem<Real>& s, const std::array<int, 3>& most) {
   using std::sin, std::cos, std::atan;
   const Real turn = Real(8) * atan(Real(1));
-  WaveTables<Real> tables;
   tables.n = s.size();
   for (std::size_t k = 0; k < 3; ++k) {
     const auto size = static_cast<std::size_t>((most[k] + 1) * tables.n);
@@ -120,7 +122,6 @@ template <class Real> WaveTables<Real> wave_tables(const ParticleSystem<Real>& s
       }
     }
   });
-  return tables;
 }
 
 /// A wave's k, and A = 4 pi C / V exp(-k^2 / 4 alpha^2) / k^2.
@@ -139,25 +140,50 @@ template <class Real> struct WaveWeight {
   }
 };
 
+/// The waves of a box, and what an evaluation computes of them.
+template <class Real> struct WaveMemory {
+  double kmax = 0;
+  Vec3<double> edges = Vec3<double>::Zero();
+  std::vector<Wave> waves;
+  std::array<int, 3> most{};
+  WaveTables<Real> tables;
+  std::vector<ActingWave<Real>> acting;
+  std::vector<Real> energies;
+
+  /// @cost allocates where the box, kmax or the number of particles is another one
+  void prepare(const ParticleSystem<Real>& s, double wave_number) {
+    if (wave_number != kmax || s.box().edges() != edges) {
+      kmax = wave_number;
+      edges = s.box().edges();
+      waves = waves_up_to(kmax, edges);
+      acting.resize(waves.size());
+      energies.resize(waves.size());
+      most = {};
+      for (const Wave& wave : waves) {
+        for (std::size_t k = 0; k < 3; ++k) most[k] = std::max(most[k], std::abs(wave[k]));
+      }
+    }
+    fill_wave_tables(tables, s, most);
+  }
+};
+
 }  // namespace detail
 
-template <class Real> void Ewald::add_waves(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+template <class Real>
+void Ewald::add_waves(ForceSink<Real>& out, const ParticleSystem<Real>& s, double strongest) const {
   const Vec3<double>& edges = s.box().edges();
-  const std::vector<detail::Wave> waves = detail::waves_up_to(*kmax, edges);
-  std::array<int, 3> most{};
-  for (const detail::Wave& wave : waves) {
-    for (std::size_t k = 0; k < 3; ++k) most[k] = std::max(most[k], std::abs(wave[k]));
-  }
-  const detail::WaveTables<Real> tables = detail::wave_tables(s, most);
+  auto& own = out.workspace().template get<detail::WaveMemory<Real>>();
+  own.prepare(s, *kmax);
+  const std::vector<detail::Wave>& waves = own.waves;
+  const detail::WaveTables<Real>& tables = own.tables;
   const detail::WaveLoops<Real> loops = detail::wave_loops<Real>();
   const Real* q = s.template column<Charge>().data();
   double unit = 1;  // of sums of doubles: n of the strongest charge are less than 2^61 units
   if constexpr (std::is_same_v<Real, double>) {
-    const double strongest = std::sqrt(detail::strongest_product(s) / s.units().coulomb_constant);
     unit = std::ldexp(1.0, std::ilogb(strongest * static_cast<double>(s.size())) + 2 - 61);
   }
-  std::vector<detail::ActingWave<Real>> acting(waves.size());
-  std::vector<Real> energies(waves.size());
+  std::vector<detail::ActingWave<Real>>& acting = own.acting;
+  std::vector<Real>& energies = own.energies;
   for_blocks(static_cast<Index>(waves.size()), [&](Index begin, Index end) {
     for (auto w = static_cast<std::size_t>(begin); w < static_cast<std::size_t>(end); ++w) {
       detail::Counted<Real> sum[2];

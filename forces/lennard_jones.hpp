@@ -6,6 +6,7 @@
 #include "engine/force_sink.hpp"
 #include "forces/lennard_jones_row.hpp"
 #include "forces/pair_force.hpp"
+#include "forces/pair_precision.hpp"
 #include "forces/pairs.hpp"
 #include "neighbors/neighbor_list.hpp"
 #include "numbers/pack.hpp"
@@ -22,17 +23,6 @@
 #include <vector>
 
 namespace noether {
-
-/// What forces of pairs are computed in.
-enum class PairPrecision : std::uint8_t {
-  full,   ///< doubles
-  mixed,  ///< forces between two particles in single precision, their sums in whole numbers; energies in doubles
-};
-
-template <> struct EnumNames<PairPrecision> {
-  static constexpr std::array<std::pair<PairPrecision, std::string_view>, 2> values = {
-      {{PairPrecision::full, "double"}, {PairPrecision::mixed, "mixed"}}};
-};
 
 namespace detail {
 

@@ -83,27 +83,63 @@ double mesh_error(double alpha, const Vec3<double>& spacing, int order, double n
       axes[static_cast<std::size_t>(axis)][static_cast<std::size_t>(j)] =
           aliases_of(wave(axis, j), spacing[axis], order);
   }
+  const bool equal = spacing[0] == spacing[1] && spacing[1] == spacing[2];  // then six orders of the axes are one
   WideSum<double> sum;
   for (int i = 0; i < parts * parts * parts; ++i) {
     const auto at = [&](std::size_t axis, int j) { return axes[axis][static_cast<std::size_t>(j)]; };
-    const Aliases one = in_space(at(0, i % parts), at(1, i / parts % parts), at(2, i / parts / parts));
+    const int x = i % parts, y = i / parts % parts, z = i / parts / parts;
+    if (equal && (x > y || y > z)) continue;
+    const double times = !equal || (x == y && y == z) ? 1 : x == y || y == z ? 3 : 6;
+    const Aliases one = in_space(at(0, x), at(1, y), at(2, z));
     const double k2 = one.k * one.k, own2 = one.own * one.own, all = one.own + one.plain, b = 1 / (all * all);
     const double A = 4 * half_circle * std::exp(-k2 / (4 * alpha * alpha)) / k2;
     const double less = one.plain * (all + one.own) * b;  // 1 - b U(k)^2
-    sum += A * A * (k2 * less * less + b * b * (k2 * own2 * one.squares + one.moments * (own2 + one.squares)));
+    sum += times * A * A * (k2 * less * less + b * b * (k2 * own2 * one.squares + one.moments * (own2 + one.squares)));
   }
   double cell = 8;  // all octants have the same
   for (int axis = 0; axis < 3; ++axis) cell /= 2 * parts * spacing[axis];
   return std::sqrt(neighbor * sum.value() * cell);
 }
 
-double spacing_for(double error, double alpha, int order, double neighbor) {
-  double below = 0.01 / alpha, above = 3 / alpha;
-  for (int k = 0; k < 20; ++k) {
-    const double middle = std::sqrt(below * above);
-    (mesh_error(alpha, Vec3<double>::Constant(middle), order, neighbor) > error ? above : below) = middle;
+namespace {
+
+/// Logarithms of mesh_error, of alpha = neighbor = 1, at equal steps of that of the spacing.
+struct ErrorsOfSpacings {
+  static constexpr int count = 33;
+  static constexpr double narrowest = 0.01, widest = 3;
+  std::array<double, count> logarithms{};
+
+  explicit ErrorsOfSpacings(int order) {
+    for (int k = 0; k < count; ++k)
+      logarithms[static_cast<std::size_t>(k)] = std::log(mesh_error(1, Vec3<double>::Constant(at(k)), order, 1));
   }
-  return below;
+  static double at(double k) { return narrowest * std::pow(widest / narrowest, k / (count - 1)); }
+  /// The last one with that error or less.
+  double widest_for(double error) const {
+    const double wanted = std::log(error);
+    int k = count - 1;
+    while (k >= 0 && logarithms[static_cast<std::size_t>(k)] > wanted) --k;
+    if (k < 0) return narrowest;
+    if (k == count - 1) return widest;
+    const double below = logarithms[static_cast<std::size_t>(k)], above = logarithms[static_cast<std::size_t>(k + 1)];
+    return at(k + (wanted - below) / (above - below));
+  }
+};
+
+}  // namespace
+
+double spacing_for(double error, double alpha, int order, double neighbor) {
+  static const std::array<ErrorsOfSpacings, 5> errors = {ErrorsOfSpacings(4), ErrorsOfSpacings(5), ErrorsOfSpacings(6),
+                                                         ErrorsOfSpacings(7), ErrorsOfSpacings(8)};
+  return errors[static_cast<std::size_t>(order - least_order)].widest_for(error / std::sqrt(neighbor * alpha)) / alpha;
+}
+
+double single_precision_error(double alpha, double spacing, double neighbor) {
+  return 6 * 0x1p-24 * alpha * neighbor * neighbor / spacing;
+}
+
+double mesh_work(double charges, double points, int order) {
+  return charges * order * order + points * std::log2(points) / 6;
 }
 
 std::int64_t quick_size(std::int64_t points) {

@@ -30,8 +30,14 @@ struct SplineWeights {
 /// @param neighbor  a of SplitErrors [length] @param spacing  of the mesh [length]
 /// @source HockneyEastwood1988, BalleneggerCerdaHolm2012
 double mesh_error(double alpha, const Vec3<double>& spacing, int order, double neighbor);
-/// The widest spacing with that error or less [length].
+/// The widest spacing with that error, to a hundredth of it, or less [length]; in equal steps along all axes.
+/// @cost the first call of a process 10 ms: mesh_error is sqrt(neighbor alpha) times a function of alpha h
 double spacing_for(double error, double alpha, int order, double neighbor);
+/// Errors of forces on a mesh in single precision, of their root mean square, in the same units: measured, and mostly
+/// less. Slopes of the potential are differences of numbers that single precision rounds.
+double single_precision_error(double alpha, double spacing, double neighbor);
+/// How long a mesh takes, in the time for a row of points of one particle: p^2 rows, and the transforms.
+double mesh_work(double charges, double points, int order);
 /// As many points, or somewhat more, for which a Fourier transform is quick.
 std::int64_t quick_size(std::int64_t points);
 

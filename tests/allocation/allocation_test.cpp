@@ -2,9 +2,11 @@
 
 #include "engine/simulation.hpp"
 #include "forces/bonded.hpp"
+#include "forces/ewald.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/oblateness.hpp"
+#include "forces/particle_mesh_ewald.hpp"
 #include "forces/sum.hpp"
 #include "integrators/all_schemes.hpp"
 #include "integrators/classical.hpp"
@@ -19,10 +21,12 @@
 #include "integrators/wisdom_holman.hpp"
 #include "tests/allocation/watched.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/charged_liquid.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/molecules.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/rigid_bodies.hpp"
+#include "tests/support/settings.hpp"
 
 #include <atomic>
 #include <cstdlib>
@@ -148,6 +152,26 @@ TEST_CASE("bonded terms allocate nothing after their first evaluation", "[alloca
   CHECK(integrator.advance(s, {.steps = 20}).steps == 20);
   integrator.settle(s, copy, {.energy = true}, std::nullopt, true);
   CHECK(allocations == start);
+}
+
+TEST_CASE("sums over a lattice of charges allocate nothing after their first evaluation", "[allocation]") {
+  ParticleSystem<double> s = test::with_special_pairs(test::charged_liquid(5));
+  const auto check = [&](const auto& force) {
+    auto integrator = compose(KineticPotential(AnyForce<double>(force)), schemes::verlet);
+    ParticleSystem<double> moved = s;
+    moved.clock() = Clock<double>::fixed(0, 1e-6);  // within one list of neighbors
+    integrator.bind(moved);
+    integrator.advance(moved, {.steps = 2});
+    const long start = allocations;
+    CHECK(integrator.advance(moved, {.steps = 5}).steps == 5);
+    CHECK(allocations == start);
+  };
+  for (const int threads : {1, 3}) {
+    const test::Threads count(threads);
+    check(Ewald{.cutoff = 2.4, .relative_error = 1e-2});
+    for (const PairPrecision precision : {PairPrecision::full, PairPrecision::mixed})
+      check(ParticleMeshEwald{.cutoff = 2.4, .relative_error = 1e-3, .precision = precision});
+  }
 }
 
 TEST_CASE("no classical method allocates inside advance", "[allocation]") {
