@@ -60,6 +60,23 @@ template <class Real> class Epicycle {
     all.v += Vec3<Real>(tilt_ * (w + w1), dv, -tilt_z_ * (x0[2] + z1));
     return all;
   }
+  /// The same where v holds (x', w, z'), and y is y + 3 Omega x t/2, which does not shear: without what is left to be
+  /// added to y, 3 Omega t/2 times the change of x, with t the time at the end.
+  Change change_in_shear(const Real& z, const Vec3<Real>& v) const {
+    Change all{Vec3<Real>(Real(0), Real(0), Real(0)), Vec3<Real>(Real(0), Real(0), Real(0))};
+    if (turns_) {
+      const Real across = far_ * v[1];
+      all.x = Vec3<Real>(across, whole_glide_ * v[1] - far_ * v[0] + shear_ * across, -back_z_ * z);
+      all.v = -Vec3<Real>(back_ * v[0], back_ * v[1], back_z_ * v[2]);
+    }
+    const Vec3<Real> v0 = v + all.v;
+    const Real z0 = z + all.x[2];
+    const Real a = v0[0] + tilt_in_shear_ * v0[1], dw = -half_ * a;
+    const Real b = v0[2] - tilt_z_ * z0, dz = across_z_ * b;
+    all.x += Vec3<Real>(across_ * a, glide_ * v0[1] - bend_ * a, dz);
+    all.v += Vec3<Real>(tilt_in_shear_ * (v0[1] + (v0[1] + dw)), dw, -tilt_z_ * (z0 + (z0 + dz)));
+    return all;
+  }
   /// Whether it has half turns, which `move` leaves out.
   bool turns() const { return turns_; }
 
@@ -111,14 +128,17 @@ template <class Real> class Epicycle {
     glide_ = rounded(Wide((Wide(8) * s / c - Wide(3) * r) / Omega));
     bend_ = rounded(Wide(Wide(4) * s * s / Omega));
     across_z_ = rounded(rates.Omega_z == 0 ? h : Wide(Wide(2) * sz * cz / Omega_z));
-    Wide tilt = Wide(2) * s / c, tilt_z = Omega_z * sz / cz;
+    half_ = rounded(Wide(s * c));
+    Wide tilt = Wide(2) * s / c, tilt_in_shear = tilt, tilt_z = Omega_z * sz / cz;
     if constexpr (!std::is_same_v<Wide, Real>) {
       // As the numbers of the other shears are rounded: 2 - T (- y' - 3 Omega x/2) is to be 2 cos r.
       const Wide turned = -(Wide(along_) + Wide(drift_) * Wide(across_));
       if (turned != Wide(0)) tilt = Wide(2) * s * s / turned;
+      if (half_ != 0) tilt_in_shear = Wide(2) * s * s / Wide(half_);
       if (across_z_ != 0) tilt_z = Wide(2) * sz * sz / Wide(across_z_);
     }
     tilt_ = rounded(tilt);
+    tilt_in_shear_ = rounded(tilt_in_shear);
     tilt_z_ = rounded(tilt_z);
     set_turns(rates, turns, turns_z);
   }
@@ -147,6 +167,7 @@ template <class Real> class Epicycle {
 
   Real drift_ = Real(0);                                     ///< 3 Omega/2
   Real tilt_ = Real(0);                                      ///< T
+  Real tilt_in_shear_ = Real(0), half_ = Real(0);            ///< T and sin(r)/2, as they are where w itself is kept
   Real across_ = Real(0), along_ = Real(0);                  ///< of x and y', by a
   Real shear_ = Real(0), glide_ = Real(0), bend_ = Real(0);  ///< of y, by x, w and a
   Real tilt_z_ = Real(0), across_z_ = Real(0);

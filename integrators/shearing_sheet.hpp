@@ -9,9 +9,11 @@
 #include "forces/sum.hpp"
 #include "integrators/epicycle.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/sheared_box.hpp"
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -69,41 +71,54 @@ template <class F, class Real = double> class ShearingSheet {
   std::string name() const { return "shearing_sheet"; }
   HamiltonianClaims claims() const {
     HamiltonianClaims claims = kicks_.claims();
-    claims.periodic = claims.keeps_momentum = claims.keeps_angular_momentum = false;
+    claims.periodic = knows_boxes;
+    claims.keeps_momentum = claims.keeps_angular_momentum = false;
+    if (!boxed_) return claims;
+    claims.coordinates = unsheared;
+    claims.inertial = false;
+    claims.time_dependent = forces_act_;  // where the images are
+    claims.no_action = "the coordinates of a sheet in a box move with its shear, and have no action";
     return claims;
   }
   const F& forces() const { return kicks_.forces(); }
 
-  /// @throws Error  in a periodic box
+  /// @throws Error  in a periodic box with other forces than gravity
   void bind(ParticleSystem<Real>& s);
   void expect_kicks(double longest) { kicks_.expect_kicks(longest); }
   bool set_neighbor_options(const NeighborOptions& options) { return kicks_.set_neighbor_options(options); }
-  void open(ParticleSystem<Real>& /*inertial already*/) {}
+  void open(ParticleSystem<Real>& s);
   void close(ParticleSystem<Real>& s);
 
   void flow(char letter, ParticleSystem<Real>& s, const Real& h);
   Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h);
+  /// Letter by letter; in a box the end of a drift across two steps follows from the word.
+  Advance run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span);
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s);
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a);
 
   void observe(std::optional<Request> wanted) {
     kicks_.observe(wanted);
+    observing_ = wanted.has_value();
     shows_momenta_ = wanted && wanted->action;
   }
   const std::optional<Failure>& failure() const { return kicks_.failure(); }
-  Evaluations evaluations() const { return kicks_.evaluations(); }
+  Evaluations evaluations() const { return boxed_ ? Evaluations{.force = evaluations_} : kicks_.evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const {
     detail::save_signature(saved, prefix + "frame/", frame_);
     kicks_.save(saved, prefix);
+    save_value(saved, prefix + "evaluations_in_box", evaluations_);
   }
   /// @throws Error  if the saved sheet turned otherwise, or had other forces
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "frame/", frame_);
     kicks_.load(saved, prefix);
+    load_value(saved, prefix + "evaluations_in_box", evaluations_);
   }
 
  private:
   static constexpr bool remembers = std::is_same_v<Real, double>;
+  static constexpr bool knows_boxes = std::is_same_v<Real, double> || std::is_same_v<Real, Quad>;
+  struct NoBox {};
   struct Known {
     Real h = Real(0);
     Epicycle<Real> epicycle;
@@ -111,13 +126,19 @@ template <class F, class Real = double> class ShearingSheet {
 
   const Epicycle<Real>& epicycle(const Real& h);
   void move(ParticleSystem<Real>& s, const Epicycle<Real>& epicycle);
+  /// @param end  time at the end of an epicycle
+  void flow_in_box(char letter, ParticleSystem<Real>& s, const Real& h, const Real& end);
 
   KineticPotential<F, Real> kicks_;
   SheetRates rates_;
   HillFrame frame_;
   std::array<Known, remembers ? 32 : 1> known_;  ///< a word has few lengths, and theirs take longer than a small step
   std::size_t count_ = 0, next_ = 0;
+  std::conditional_t<knows_boxes, ShearedBox<Real>, NoBox> box_;
+  bool boxed_ = false;
+  std::int64_t evaluations_ = 0;  ///< in a box
   bool forces_act_ = true;
+  bool observing_ = false;
   bool shows_momenta_ = false;
 };
 

@@ -11,12 +11,21 @@
 namespace noether {
 
 template <class F, class Real> void ShearingSheet<F, Real>::bind(ParticleSystem<Real>& s) {
-  if (s.box().is_periodic()) {
-    throw Error("a shearing sheet does not support a periodic box; take the box out");
-  }
-  kicks_.bind(s);
   forces_act_ = !std::is_same_v<F, Sum<>>;
   if constexpr (requires(const F& f) { f.terms().empty(); }) forces_act_ = !kicks_.forces().terms().empty();
+  boxed_ = s.box().is_periodic();
+  if (!boxed_) return kicks_.bind(s);
+  if constexpr (knows_boxes) {
+    box_.bind(s, rates_, kicks_.forces());
+  } else {
+    throw Error("shearing sheets in boxes are stepped one system at a time; run these systems one by one");
+  }
+}
+
+template <class F, class Real> void ShearingSheet<F, Real>::open(ParticleSystem<Real>& s) {
+  if constexpr (knows_boxes) {
+    if (boxed_) box_.open(s);
+  }
 }
 
 template <class F, class Real> const Epicycle<Real>& ShearingSheet<F, Real>::epicycle(const Real& h) {
@@ -55,12 +64,42 @@ void ShearingSheet<F, Real>::move(ParticleSystem<Real>& s, const Epicycle<Real>&
 }
 
 template <class F, class Real> void ShearingSheet<F, Real>::flow(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if constexpr (knows_boxes) {
+    if (boxed_) {
+      if (!observing_) {
+        throw Error("in the box of a shearing sheet there are no letters beside A and B; take drag and baths out");
+      }
+      // What is left of a step for an observer ends at its end.
+      return flow_in_box(letter, s, h, s.time());
+    }
+  }
   if (letter == 'A') return move(s, epicycle(h));
   if (forces_act_) kicks_.flow(letter, s, h);
 }
 
 template <class F, class Real>
+void ShearingSheet<F, Real>::flow_in_box(char letter, ParticleSystem<Real>& s, const Real& h, const Real& end) {
+  if constexpr (knows_boxes) {
+    if (letter == 'A') return box_.move(s, epicycle(h), end);
+    box_.kick(s, h);
+    if (!observing_ && forces_act_) ++evaluations_;
+  }
+}
+
+template <class F, class Real>
+Advance ShearingSheet<F, Real>::run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+  if (!boxed_) return walk_letters(*this, word, s, span, [&](char letter, const Real& h) { flow(letter, s, h); });
+  const Real dt(s.clock().dt()), first = word.stages().front().weight;
+  std::int64_t step = s.clock().step() - 1;
+  return walk_letters(*this, word, s, span, [&](char letter, const Real& h) {
+    const bool begins = std::exchange(step, s.clock().step()) != s.clock().step();
+    flow_in_box(letter, s, h, Real(s.time() + (begins ? Real(first * dt) : h)));
+  });
+}
+
+template <class F, class Real>
 Real ShearingSheet<F, Real>::flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if (boxed_) throw LogicError("a sheet in a box has no action");
   if (letter != 'A') return forces_act_ ? kicks_.flow_with_action(letter, s, h) : Real(0);
   const Epicycle<Real>& epicycle = this->epicycle(h);
   const Real rate = Real(2) * Real(rates_.Omega);
@@ -77,6 +116,9 @@ Real ShearingSheet<F, Real>::flow_with_action(char letter, ParticleSystem<Real>&
 }
 
 template <class F, class Real> void ShearingSheet<F, Real>::close(ParticleSystem<Real>& s) {
+  if constexpr (knows_boxes) {
+    if (boxed_) return box_.close(s);
+  }
   if (!shows_momenta_) return;
   const Real rate = Real(2) * Real(rates_.Omega);
   for (Index i = 0; i < s.size(); ++i) {
@@ -86,18 +128,23 @@ template <class F, class Real> void ShearingSheet<F, Real>::close(ParticleSystem
 }
 
 template <class F, class Real> EnergyTerms<Real> ShearingSheet<F, Real>::energy(const ParticleSystem<Real>& s) {
-  EnergyTerms<Real> energy = kicks_.energy(s);
-  energy.potential += sum_over<Real>(
-      s.size(), [&](Index i) { return Real(s.masses()[i] * frame_.potential(Vec3<Real>(s.positions()[i]))); });
+  EnergyTerms<Real> energy;
+  if constexpr (knows_boxes) {
+    if (boxed_) energy = {kinetic_energy(s), box_.potential(s)};
+  }
+  if (!boxed_) energy = kicks_.energy(s);
+  energy.potential +=
+      sum_over<Real>(s.size(), [&](Index i) { return Real(s.masses()[i] * frame_.potential(s.unwrapped(i))); });
   return energy;
 }
 
 template <class F, class Real>
 void ShearingSheet<F, Real>::accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
-  kicks_.accelerations(s, a);
-  for (Index i = 0; i < s.size(); ++i) {
-    a.add(i, frame_.acceleration(Vec3<Real>(s.positions()[i]), Vec3<Real>(s.velocities()[i])));
+  if constexpr (knows_boxes) {
+    if (boxed_) box_.accelerations(s, a);
   }
+  if (!boxed_) kicks_.accelerations(s, a);
+  for (Index i = 0; i < s.size(); ++i) a.add(i, frame_.acceleration(s.unwrapped(i), Vec3<Real>(s.velocities()[i])));
 }
 
 }  // namespace noether

@@ -222,7 +222,7 @@ std::vector<Twin> turning_twins() {
            .method = "yoshida_4"}};
 }
 
-/// A cloud in a shearing sheet, with and without compensation.
+/// A cloud in a shearing sheet, with and without compensation, and in a box.
 std::vector<Twin> sheet_twins() {
   const ShearingSheetOptions frame{.Omega = 0.7, .Omega_z = 1.1};
   std::vector<Twin> twins;
@@ -238,6 +238,16 @@ std::vector<Twin> sheet_twins() {
          .method = "aba_8_6_4",
          .options = options});
   }
+  ParticleSystem<double> boxed = test::cloud(300);
+  boxed.set_box(Box::periodic({1.5, 2, 8}));
+  twins.push_back({.name = "a shearing sheet in a box",
+                   .bodies = boxed,
+                   .program = compose(ShearingSheet(Gravity{.G = 1, .softening = 0.05}, frame), schemes::yoshida_4),
+                   .step = 0.05,
+                   .hamiltonian = "[hamiltonian]\ntype='shearing_sheet'\nOmega=0.7\nOmega_z=1.1\n"
+                                  "[[hamiltonian.force]]\ntype='gravity'\nG=1\nsoftening=0.05\n",
+                   .method = "yoshida_4",
+                   .place = "box=[1.5,2,8]\n"});
   return twins;
 }
 

@@ -206,7 +206,7 @@ HAMILTONIANS = {
     "wisdom_holman": Case(PLANETS, '[hamiltonian]\ntype = "wisdom_holman"\nG = 1\n'),
     "charged_particles": Case(CHARGES, fields(SOLENOID)),
     "k_symplectic": Case(CHARGES, fields(SOLENOID, kind="k_symplectic"), rivals=WHOLE_STEPS),
-    "shearing_sheet": Case(PAIR, '[hamiltonian]\ntype = "shearing_sheet"\nOmega = 0.5\nOmega_z = 0.8\n' +
+    "shearing_sheet": Case(PLANETS, '[hamiltonian]\ntype = "shearing_sheet"\nOmega = 0.5\nOmega_z = 0.8\n' +
                            table("hamiltonian.force", GRAVITY)),
 }
 
