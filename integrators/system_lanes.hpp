@@ -1,0 +1,84 @@
+#pragma once
+/// Eight systems of one make side by side, members of an ensemble, under a splitting method.
+
+#include "engine/concepts.hpp"
+#include "engine/outcome.hpp"
+#include "engine/particle_system.hpp"
+#include "forces/sum.hpp"
+#include "integrators/composition_options.hpp"
+#include "integrators/scheme.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace noether {
+
+/// The states of eight systems, and the flows of the Hamiltonian that they have in common but for masses.
+///
+/// What becomes of a lane depends on what was put into it, and on nothing else: no flow carries anything from one lane
+/// to another. Between `show()` and `go_on()` flows move a copy, which can be taken; `keep()` keeps a state that
+/// `go_back()` returns to.
+class SystemLanes {
+ public:
+  static constexpr std::size_t lanes = 8;
+
+  virtual ~SystemLanes() = default;
+  virtual std::string name() const = 0;
+  virtual HamiltonianClaims claims() const = 0;
+
+  /// Puts inertial particles into a lane.
+  virtual void put(std::size_t lane, const ParticleSystem<double>& s) = 0;
+  /// Gives particles the inertial positions and velocities of a lane of the copy.
+  virtual void take(std::size_t lane, ParticleSystem<double>& s) const = 0;
+  /// A lane becomes a copy of another one, in the run.
+  virtual void copy_lane(std::size_t from, std::size_t to) = 0;
+
+  virtual void show() = 0;
+  virtual void go_on() = 0;
+  virtual void keep() = 0;
+  virtual void go_back() = 0;
+
+  virtual void flow(char letter, double h, double time) = 0;
+  /// Why a flow of the run could not be done since `go_back()`, in one lane at least; the first time tells.
+  virtual const std::optional<Failure>& failure() const = 0;
+};
+
+/// Systems under forces that depend on positions and time: p^2/2m + U.
+/// @param like  one of them; all have its size and its ids
+/// @param compensated  whether what rounding takes from sums is kept
+/// @throws Error  for forces that have no lanes, or cannot act on these particles
+std::unique_ptr<SystemLanes> systems_under_forces(const ForceField<double>& forces, const ParticleSystem<double>& like,
+                                                  bool compensated);
+
+/// Eight runs at once, step by step: a splitting method over systems in lanes.
+class LaneRun {
+ public:
+  /// @throws SchemeMismatch
+  LaneRun(std::unique_ptr<SystemLanes> systems, const Scheme& scheme, const CompositionOptions& options,
+          const Clock<double>& clock);
+  ~LaneRun();
+  LaneRun(const LaneRun&) = delete;
+  LaneRun& operator=(const LaneRun&) = delete;
+
+  std::int64_t step() const;
+  SystemLanes& systems() { return *systems_; }
+
+  /// Makes steps, up to one that fails in a lane. @return whether none has failed
+  bool advance(std::int64_t steps);
+  /// Completes a copy, which `take` tells of.
+  void settle();
+  /// Gives particles the settled state of a lane, and its clock.
+  void take(std::size_t lane, ParticleSystem<double>& s) const;
+  void keep();
+  void go_back();
+
+ private:
+  struct Walk;
+  std::unique_ptr<SystemLanes> systems_;
+  std::unique_ptr<Walk> walk_;
+};
+
+}  // namespace noether
