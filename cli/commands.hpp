@@ -19,6 +19,8 @@ void add_explain_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_compare_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_advise_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_stability_command(CLI::App& app, const Parts& parts, int& exit_code);
+void add_ensemble_command(CLI::App& app, const Parts& parts, int& exit_code);
+void add_merge_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_list_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_describe_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_info_command(CLI::App& app, const Parts& parts, int& exit_code);

@@ -14,6 +14,7 @@
 #include "scene/read_particles.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
+#include "study/ensemble_lanes.hpp"
 #include "study/kepler_steps.hpp"
 
 #include <fmt/format.h>
@@ -450,6 +451,9 @@ void print_text(const Scene& scene, const Explanation& e, bool all) {
   for (const std::string& warning : warnings_of(scene)) fmt::print("warning: {}\n", warning);
   if (e.stiffness) print_stiffness(scene, e);
   if (!e.why_no_stiffness.empty()) fmt::print("stiffness: not known: {}\n", e.why_no_stiffness);
+  const std::string alone = why_alone(scene);
+  fmt::print("ensembles: {}\n",
+             alone.empty() ? "members go in lanes, eight at a time" : fmt::format("members go one by one: {}", alone));
   fmt::print("SIMD level: {}\n", name(simd_level()));
 }
 
@@ -482,6 +486,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
   std::vector<std::string> letters;
   letters.reserve(e.flows.size());  // the members point into it
   for (const auto& [letter, count] : e.flows) flows.emplace_back(letters.emplace_back(1, letter), count);
+  const std::string alone = why_alone(scene);
   return Json::object(
       {{"schema", "noether.explain/1"},
        {"method", e.method},
@@ -504,6 +509,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
        {"jacobians_per_step", e.jacobians},
        {"simd", std::string(name(simd_level()))},
        {"step", scene.integrator.step},
+       {"members_alone", alone.empty() ? Json() : Json(alone)},
        {"epoch", epoch.empty() ? Json() : Json(epoch)},
        {"recommended_step", e.kepler ? Json(e.kepler->recommended()) : Json()},
        {"time_unit", scene.units->time}});

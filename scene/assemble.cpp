@@ -23,12 +23,7 @@ namespace {
 constexpr std::int64_t once = std::int64_t{1} << 62;
 
 void attach_monitors(Simulation<double>& sim, const Scene& scene) {
-  Watched watched{.constraints = constraints_of(scene), .symmetries = {}, .charges = {}, .momenta = {}};
-  if (scene.system) {
-    watched.symmetries = scene.system->symmetries;
-    watched.momenta = scene.system->momenta;
-  }
-  watched.charges = {fields_among(forces_of(scene)).terms(), scene.hamiltonian.splitting.c};
+  const Watched watched = detail::watched_of(scene);
   for (const SceneWatch& watch : scene.watches) {
     if (watch.kind == SceneWatch::Kind::monitor) {
       detail::attach(sim, watch.cadence, watch.monitor.make(watched));
@@ -259,6 +254,16 @@ AnyIntegrator<double> integrator_of(const Scene& scene, std::size_t decorators) 
 }
 
 namespace detail {
+
+Watched watched_of(const Scene& scene) {
+  Watched watched{.constraints = constraints_of(scene), .symmetries = {}, .charges = {}, .momenta = {}};
+  if (scene.system) {
+    watched.symmetries = scene.system->symmetries;
+    watched.momenta = scene.system->momenta;
+  }
+  watched.charges = {fields_among(forces_of(scene)).terms(), scene.hamiltonian.splitting.c};
+  return watched;
+}
 
 Simulation<double> assemble_start(const Scene& scene) {
   Simulation<double> sim(scene.particles, integrator_of(scene), clock_of(scene.integrator));

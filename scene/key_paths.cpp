@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 namespace noether {
 
@@ -134,7 +135,27 @@ bool leads_to(const std::vector<std::string>& path, const std::vector<std::strin
   return true;
 }
 
+/// The element of a list that has a number, a type or a name; null where none has, or several have.
+const SceneValue* element_of(const SceneValue::Array& list, const std::string& key) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+  if (error == std::errc() && end == key.data() + key.size()) return index < list.size() ? &list[index] : nullptr;
+  const auto has_it = [&](const SceneValue& one) { return text_at(one, "type") == key || text_at(one, "name") == key; };
+  if (std::count_if(list.begin(), list.end(), has_it) != 1) return nullptr;
+  return &*std::find_if(list.begin(), list.end(), has_it);
+}
+
 }  // namespace
+
+const SceneValue* find_path(const SceneValue& scene, std::string_view path) {
+  const SceneValue* at = &scene;
+  for (const std::string& key : keys_of_path(path)) {
+    const auto* list = at->get<SceneValue::Array>();
+    at = list != nullptr ? element_of(*list, key) : at->find(key);
+    if (at == nullptr) return nullptr;
+  }
+  return at;
+}
 
 std::vector<std::string> keys_of_path(std::string_view path) {
   std::vector<std::string> keys(1);

@@ -192,6 +192,8 @@ AnyIntegrator<double> integrator_of(const Scene& scene,
 Simulation<double> assemble(const Scene& scene, const SceneFiles& files = {});
 
 namespace detail {
+/// What the monitors of a scene may ask of its run.
+Watched watched_of(const Scene& scene);
 /// The run of a scene without what it writes, and without watches that the scene does not name.
 Simulation<double> assemble_start(const Scene& scene);
 }  // namespace detail

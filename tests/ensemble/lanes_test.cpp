@@ -1,0 +1,207 @@
+// Members in lanes: the bits of a member alone, whoever stands beside it, and the run of the scene to rounding.
+
+#include "study/ensemble_lanes.hpp"
+
+#include "tests/ensemble/support.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace noether::test {
+namespace {
+
+/// The rows of members, made in one call.
+std::vector<io::EnsembleRow> rows_together(const EnsembleScene& scene, const std::vector<std::int64_t>& members) {
+  std::vector<io::EnsembleRow> rows;
+  for (EnsembleMember& one : run_members(scene, members, true, nullptr)) rows.push_back(std::move(*one.row));
+  return rows;
+}
+
+/// Each member alone, and in two companies, in other lanes.
+void check_company(const EnsembleScene& scene, std::int64_t members) {
+  for (std::int64_t k = 0; k < members; ++k) {
+    CAPTURE(k);
+    const io::EnsembleRow alone = rows_together(scene, {k})[0];
+    std::vector<std::int64_t> company = {k}, other;
+    for (std::int64_t j = 1; j < 8; ++j) company.push_back((k + j) % members);
+    for (std::int64_t j = 3; j > 0; --j) other.push_back((k + 5 * j) % members);
+    other.push_back(k);
+    CHECK(rows_together(scene, company)[0].bytes() == alone.bytes());
+    CHECK(rows_together(scene, other)[3].bytes() == alone.bytes());
+  }
+}
+
+/// The largest difference of positions at the end between members in lanes and one by one, and that all end alike.
+double difference(const EnsembleScene& scene, const std::vector<std::int64_t>& members) {
+  const std::vector<io::EnsembleRow> rows = rows_together(scene, members);
+  double most = 0;
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const auto alone = run_members(scene, {&members[k], 1}, false, nullptr);
+    const io::EnsembleRow& one = *alone[0].row;
+    CHECK(rows[k].outcome == one.outcome);
+    CHECK(rows[k].step == one.step);
+    CHECK(rows[k].particle == one.particle);
+    std::size_t at = scene.definition().keys.size();
+    for (const io::EnsembleColumn& column : scene.definition().columns) {
+      const auto end = at + static_cast<std::size_t>(column.width());
+      for (std::size_t i = at; column.name == "position" && i < end; ++i) {
+        most = std::max(most, std::abs(rows[k].values[i] - one.values[i]));
+      }
+      at = end;
+    }
+  }
+  return most;
+}
+
+const std::vector<std::string> near = {"particles.body.c.a=1.15:1.8:4", "particles.body.b.e=0:0.9995:4"};
+const std::vector<std::string> calm = {"particles.body.c.a=1.6:2.2:4", "particles.body.c.mass=1e-4:1e-3:2"};
+
+TEST_CASE("a member has the same bits alone and in any company, in any lane", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  const auto check = [&](const std::string& hamiltonian, const std::string& method) {
+    INFO(hamiltonian << " " << method);
+    write_text(folder / "scene.toml", planets(hamiltonian, method, 120));
+    REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
+    // Among the members are near-parabolic arcs, close encounters, and bodies that escape.
+    check_company(EnsembleScene(folder / "scene.toml", plan_of(near), {}, true, standard_parts()), 16);
+  };
+  check("type = \"wisdom_holman\"", "verlet_aba");
+  check("type = \"wisdom_holman\"\n[[hamiltonian.force]]\ntype = \"gr_potential\"\nc = 100", "aba_10_6_4");
+  check("type = \"wisdom_holman\"\n[[hamiltonian.force]]\ntype = \"oblateness\"\nJ2 = 1e-3\nradius = 0.01",
+        "verlet_aba");
+  check("type = \"kinetic_potential\"\n[[hamiltonian.force]]\ntype = \"gravity\"", "yoshida_4");
+}
+
+TEST_CASE("members in lanes are the runs of their scenes to rounding", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  const auto of = [&](const std::string& hamiltonian, const std::string& method, const std::string& integrator = "") {
+    INFO(hamiltonian << " " << method << " " << integrator);
+    write_text(folder / "scene.toml",
+               replaced(planets(hamiltonian, method), "step = 0.1\n", "step = 0.1\n" + integrator + "\n"));
+    const EnsembleScene scene(folder / "scene.toml", plan_of(calm), {}, true, standard_parts());
+    REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
+    const double most = difference(scene, {0, 1, 2, 3, 4, 5, 6, 7});
+    CHECK(most > 0);  // other code: else lanes were not used
+    return most;
+  };
+  const std::string wisdom_holman = "type = \"wisdom_holman\"";
+  const std::string relativity = wisdom_holman + "\n[[hamiltonian.force]]\ntype = \"gr_potential\"\nc = 100\n";
+  const std::string oblate = "[[hamiltonian.force]]\ntype = \"oblateness\"\nJ2 = 1e-3\nradius = 0.01\n";
+  const std::string gravity = "type = \"kinetic_potential\"\n[[hamiltonian.force]]\ntype = \"gravity\"";
+  // 200 steps are three revolutions; roundings of 1e-16 a step grow with their square root and the time.
+  CHECK(of(wisdom_holman, "verlet_aba") <= 2e-13);
+  CHECK(of(wisdom_holman, "verlet_aba", "corrector = 17") <= 2e-13);
+  CHECK(of(wisdom_holman, "aba_10_6_4") <= 2e-13);
+  CHECK(of(wisdom_holman, "aba_10_6_4", "compensated = true") <= 2e-13);
+  CHECK(of(relativity, "verlet_aba") <= 2e-13);
+  CHECK(of(relativity + oblate, "verlet_aba") <= 2e-13);
+  CHECK(of(wisdom_holman + "\n" + oblate, "verlet_aba") <= 2e-13);
+  CHECK(of(gravity, "verlet") <= 2e-13);
+  CHECK(of(gravity, "srkn14a") <= 2e-13);
+  CHECK(of(gravity + "\n" + oblate, "yoshida_4", "compensated = true") <= 2e-13);
+}
+
+TEST_CASE("members that fail in lanes end at the last whole step before, and disturb nobody", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  write_text(folder / "scene.toml", R"(units = "reduced"
+[particles]
+body = [{ name = "ball", mass = 1, x = [1, 0, 0], v = [0, 0, 0] }]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "harmonic_field"
+k = 100
+[integrator]
+method = "verlet"
+step = 1
+steps = 1000
+[[every]]
+type = "energy"
+steps = 10
+)");
+  // The mass makes the spring harder or softer; above 25 the step is within the limit of linear theory.
+  const EnsembleScene scene(folder / "scene.toml", plan_of({"particles.body.ball.mass=1:50:8"}), {}, true,
+                            standard_parts());
+  CHECK(why_alone(load_scene(folder / "scene.toml")).empty());
+  std::vector<std::int64_t> members = {0, 1, 2, 3, 4, 5, 6, 7};
+  const std::vector<io::EnsembleRow> rows = rows_together(scene, members);
+  std::size_t diverged = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto alone = run_members(scene, {&members[k], 1}, false, nullptr);
+    CHECK(rows[k].outcome == alone[0].row->outcome);
+    CHECK(rows[k].step == alone[0].row->step);  // the field's sums are the same in lanes and by themselves
+    CHECK(rows[k].digest == alone[0].row->digest);
+    CHECK(rows_together(scene, {members[k]})[0].bytes() == rows[k].bytes());
+    diverged += rows[k].outcome == static_cast<std::int64_t>(Outcome::Kind::diverged) ? 1 : 0;
+  }
+  CHECK(diverged == 4);  // masses 1, 8, 15, 22
+}
+
+/// A spring that pulls on one side only, as somebody writes it who does not think of lanes.
+struct OneSided {
+  double k = 1;
+  static constexpr auto describe() {
+    return part<OneSided>("one_sided", "a spring where x is above 0", formula("U = k x^2/2, x > 0"),
+                          field<&OneSided::k>("k", "1"));
+  }
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    for (Index i = 0; i < s.size(); ++i) {
+      const Real x = s.positions()[i][0];
+      if (x > Real(0)) {
+        out.force(i, Vec3<Real>(-Real(k) * x, Real(0), Real(0)));
+        out.energy(Real(k) * x * x / Real(2));
+      } else {
+        out.force(i, Vec3<Real>(Real(1), Real(0), Real(0)));
+        out.energy(-x);
+      }
+    }
+  }
+};
+
+TEST_CASE("forces whose branches differ from lane to lane have the bits of each lane alone, masses and all",
+          "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  write_text(folder / "scene.toml", R"(units = "reduced"
+[particles]
+body = [{ name = "ball", mass = 1, x = [1, 0, 0], v = [0, 0, 0] }]
+[hamiltonian]
+type = "kinetic_potential"
+force = [{ type = "one_sided", k = 2 }, { type = "harmonic_field", k = 0.1 }]
+[integrator]
+method = "yoshida_4"
+step = 0.1
+steps = 100
+)");
+  Parts parts = standard_parts();
+  parts.add_force<OneSided>();
+  const EnsembleScene scene(folder / "scene.toml", plan_of({"particles.body.ball.mass=1:3:16"}), {}, true, parts);
+  REQUIRE(why_alone(load_scene(folder / "scene.toml", parts)).empty());
+  check_company(scene, 16);
+  CHECK(difference(scene, {0, 3, 6, 9, 12, 15}) <= 1e-13);
+}
+
+TEST_CASE("what goes one by one says why", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  const auto why = [&](const std::string& what, const std::string& by) {
+    write_text(folder / "scene.toml", replaced(planets(), what, by));
+    return why_alone(load_scene(folder / "scene.toml"));
+  };
+  CHECK(why("verlet_aba", "verlet_aba").empty());
+  CHECK(why("method = \"verlet_aba\"", "method = \"gauss_8\"") == "the method 'gauss_8' has no lanes");
+  CHECK(why("type = \"wisdom_holman\"", "type = \"wisdom_holman\"\ncoordinates = \"democratic\"") ==
+        "coordinates = \"democratic\" have no lanes");
+  CHECK(why("step = 0.1", "step = 0.1\nkernel = \"lazy\"") == "kernels of modified kicks have no lanes");
+  CHECK(why("name = \"c\"\nmass = 1e-3", "name = \"c\"\nmass = 0") ==
+        "tracers of wisdom_holman go in lanes by themselves");
+  CHECK(why("[[stop]]", "[[every]]\ntype = \"shadow_hamiltonian\"\nsteps = 10\n[[stop]]") ==
+        "monitor 'shadow_hamiltonian' asks for the action of the flows");
+  CHECK(why("type = \"wisdom_holman\"",
+            "type = \"wisdom_holman\"\n[[hamiltonian.force]]\ntype = \"linear_drag\"\nrate = 0.1") ==
+        "'linear_drag' is a letter of its own, which has no lanes");
+}
+
+}  // namespace
+}  // namespace noether::test
