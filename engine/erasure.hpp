@@ -384,6 +384,12 @@ template <class Real = double> class AnyHamiltonian : private detail::Erased<det
       : detail::Erased<detail::HamiltonianBase<Real>>(std::make_unique<detail::HamiltonianModel<H>>(std::move(h))) {}
 
   NOETHER_HAMILTONIAN_SEAM(NOETHER_SEAM_CALL, NOETHER_SEAM_CALL)
+
+  /// The Hamiltonian itself where it is of this type, or null.
+  template <class H> const H* as() const {
+    const auto* model = dynamic_cast<const detail::HamiltonianModel<H>*>(this->held_.get());
+    return model != nullptr ? &model->held : nullptr;
+  }
 };
 
 /// Any integrator over one number type; one virtual call per cut of the run.

@@ -150,6 +150,15 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
         lanes_.forget();  // saved when tracers went letter by letter
     }
   }
+  /// Once it is bound: its coordinates and masses, by particle the mass that its arc goes round and the mass that makes
+  /// its velocity a momentum, and Newton's constant.
+  const detail::AboutPrimary<Real>& about() const { return *this; }
+  const std::vector<Real>& circled() const { return circled_; }
+  const std::vector<Real>& reduced() const { return reduced_; }
+  const Real& constant() const { return g_; }
+  /// The forces beside gravity.
+  const F& forces() const { return forces_; }
+
   /// Particles in the order of Jacobi coordinates, massive bodies first.
   const std::vector<std::int64_t>& order() const { return order_; }
 

@@ -11,6 +11,7 @@
 #include "io/trajectory.hpp"
 #include "numbers/parallel.hpp"
 #include "scene/default_watches.hpp"
+#include "scene/tangents.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -256,7 +257,8 @@ AnyIntegrator<double> integrator_of(const Scene& scene, std::size_t decorators) 
 namespace detail {
 
 Watched watched_of(const Scene& scene) {
-  Watched watched{.constraints = constraints_of(scene), .symmetries = {}, .charges = {}, .momenta = {}};
+  Watched watched{.constraints = constraints_of(scene), .symmetries = {}, .charges = {}, .momenta = {}, .tangents = {}};
+  watched.tangents.make = [&scene](Index changes) { return tangents_of(scene, changes); };
   if (scene.system) {
     watched.symmetries = scene.system->symmetries;
     watched.momenta = scene.system->momenta;

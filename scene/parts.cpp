@@ -56,6 +56,7 @@
 #include "integrators/wisdom_holman.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/chaos.hpp"
 #include "monitors/charges.hpp"
 #include "monitors/dihedrals.hpp"
 #include "monitors/dipole.hpp"
@@ -255,6 +256,8 @@ Parts standard_parts() {
   parts.add_monitor<MagneticMoment>();
   parts.add_monitor<ConstraintResidual>();
   parts.add_monitor<ShadowHamiltonian<double>>();
+  parts.add_monitor<Megno<double>>();
+  parts.add_monitor<Lyapunov<double>>();
   parts.add_stop<Escape>();
   parts.add_stop<Collision>();
   parts.add_decorator<ProjectionOptions>();

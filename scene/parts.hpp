@@ -7,6 +7,7 @@
 #include "engine/any_force.hpp"
 #include "engine/momentum_shares.hpp"
 #include "engine/simulation.hpp"
+#include "engine/tangent_flow.hpp"
 #include "forces/electromagnetic_field.hpp"
 #include "forces/sum.hpp"
 #include "integrators/hamiltonian_system.hpp"
@@ -111,13 +112,14 @@ struct SceneConstraint {
   }
 };
 
-/// What monitors may ask of a run beside its particles: constraints, symmetries of its system, fields of charges, and
-/// how the system shares its momentum with a field.
+/// What monitors may ask of a run beside its particles: constraints, symmetries of its system, fields of charges, how
+/// the system shares its momentum with a field, and how small changes of its state go along.
 struct Watched {
   ConstraintSet constraints;
   std::vector<Symmetry> symmetries;
   ChargeMotion charges;
   MomentumSharing momenta;  ///< empty where it has none
+  TangentFlows<double> tangents = {};
 };
 
 /// A monitor as a scene asked for it.
@@ -517,6 +519,9 @@ class Parts {
       if constexpr (requires { watching.watch(of.symmetries); }) watching.watch(of.symmetries);
       if constexpr (requires { watching.watch(of.charges); }) watching.watch(of.charges);
       if constexpr (requires { watching.watch(of.momenta); }) watching.watch(of.momenta);
+      if constexpr (requires { watching.watch(of.tangents); }) {
+        if (of.tangents.make) watching.watch(of.tangents);
+      }
       return AnyMonitor<double>(std::move(watching));
     };
     if constexpr (requires { monitor.cost(Index(1), std::int64_t{1}); }) {

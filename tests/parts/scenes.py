@@ -445,6 +445,8 @@ MONITORS = {
                                 constrained(BAR, TIED)),
     "shadow_hamiltonian": seen("type = 'shadow_hamiltonian'; orders = [4, 8]; steps = 1",
                                Case(PLANETS, forces(GRAVITY))),
+    "megno": seen("type = 'megno'; seed = 3; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
+    "lyapunov": seen("type = 'lyapunov'; vectors = 2; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
     "trajectory": Case(PLANETS, forces(GRAVITY)),
     "checkpoint": Case(PLANETS, forces(GRAVITY)),
     # Both end the run between its half and its end.
