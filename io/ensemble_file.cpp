@@ -19,10 +19,10 @@ namespace noether::io {
 
 namespace {
 
-const std::string group = "/ensemble";
+const std::string ensemble_group = "/ensemble";
 constexpr const char* schema = "noether.ensemble/1";
 
-std::string below(const std::string& name) { return group + "/" + name; }
+std::string below(const std::string& name) { return ensemble_group + "/" + name; }
 
 /// The whole numbers of rows, by the names of their datasets.
 constexpr std::pair<const char*, std::int64_t EnsembleRow::*> integers[] = {{"member", &EnsembleRow::member},
@@ -54,16 +54,16 @@ void write_definition(const Hdf5File& file, const EnsembleDefinition& d, const E
   file.set_attribute("/noether", "version", version());
   file.set_attribute("/noether", "commit", commit());
   file.set_attribute("/noether", "simd", d.simd);
-  file.make_group(group);
-  file.set_attribute(group, "schema", schema);
-  file.set_attribute(group, "grid", std::vector<std::int64_t>(d.grid.begin(), d.grid.end()));
-  file.set_attribute(group, "members", d.members);
-  file.set_attribute(group, "seed", d.seed);
-  file.set_attribute(group, "in_lanes", std::int64_t{d.in_lanes ? 1 : 0});
-  file.set_attribute(group, "definition", d.digest());
+  file.make_group(ensemble_group);
+  file.set_attribute(ensemble_group, "schema", schema);
+  file.set_attribute(ensemble_group, "grid", std::vector<std::int64_t>(d.grid.begin(), d.grid.end()));
+  file.set_attribute(ensemble_group, "members", d.members);
+  file.set_attribute(ensemble_group, "seed", d.seed);
+  file.set_attribute(ensemble_group, "in_lanes", std::int64_t{d.in_lanes ? 1 : 0});
+  file.set_attribute(ensemble_group, "definition", d.digest());
   if (shard.whole()) return;
-  file.set_attribute(group, "shard", shard.shard);
-  file.set_attribute(group, "shards", shard.shards);
+  file.set_attribute(ensemble_group, "shard", shard.shard);
+  file.set_attribute(ensemble_group, "shards", shard.shards);
 }
 
 /// @throws FileError
@@ -75,7 +75,7 @@ void write_definition(const Hdf5File& file, const EnsembleDefinition& d, const E
 std::vector<EnsembleColumn> columns_in(const Hdf5File& file) {
   std::vector<EnsembleColumn> columns;
   std::vector<std::pair<std::int64_t, std::string>> order;
-  for (const std::string& name : file.children(group)) {
+  for (const std::string& name : file.children(ensemble_group)) {
     if (file.has_attribute(below(name), "column"))
       order.emplace_back(file.integer_attribute(below(name), "column"), name);
   }
@@ -97,10 +97,10 @@ EnsembleDefinition definition_in(const Hdf5File& file, const std::filesystem::pa
   EnsembleDefinition d;
   d.scene_toml = file.read_text("/noether/scene");
   d.simd = file.text_attribute("/noether", "simd");
-  d.members = file.integer_attribute(group, "members");
-  d.seed = file.integer_attribute(group, "seed");
-  d.in_lanes = file.integer_attribute(group, "in_lanes") != 0;
-  for (const std::int64_t n : file.integers_attribute(group, "grid")) d.grid.push_back(n);
+  d.members = file.integer_attribute(ensemble_group, "members");
+  d.seed = file.integer_attribute(ensemble_group, "seed");
+  d.in_lanes = file.integer_attribute(ensemble_group, "in_lanes") != 0;
+  for (const std::int64_t n : file.integers_attribute(ensemble_group, "grid")) d.grid.push_back(n);
   d.variations = file.open(below("vary")).read_texts();
   d.keys = file.open(below("keys")).read_texts();
   d.outcomes = file.open(below("outcomes")).read_texts();
@@ -220,7 +220,7 @@ void write_ensemble(const std::filesystem::path& name, const EnsembleTable& tabl
 bool holds_ensemble(const std::filesystem::path& name) noexcept {
   try {
     const Hdf5File file = Hdf5File::open_to_read(name);
-    return file.has(group) && file.text_attribute(group, "schema") == schema;
+    return file.has(ensemble_group) && file.text_attribute(ensemble_group, "schema") == schema;
   } catch (const std::exception&) {
     return false;
   }
@@ -231,16 +231,16 @@ EnsembleTable read_ensemble(const std::filesystem::path& name) {
     refuse(name, "these are the rows of an unfinished shard or ensemble; run it again, it goes on from there");
   }
   const Hdf5File file = Hdf5File::open_to_read(name);
-  if (!file.has(group) || file.text_attribute(group, "schema") != schema)
+  if (!file.has(ensemble_group) || file.text_attribute(ensemble_group, "schema") != schema)
     refuse(name, "this is not a file of an ensemble");
   EnsembleTable table;
   table.definition = definition_in(file, name);
   const EnsembleDefinition& d = table.definition;
-  if (file.has_attribute(group, "shards")) {
-    table.shard = {file.integer_attribute(group, "shard"), file.integer_attribute(group, "shards")};
+  if (file.has_attribute(ensemble_group, "shards")) {
+    table.shard = {file.integer_attribute(ensemble_group, "shard"), file.integer_attribute(ensemble_group, "shards")};
   }
   const bool sane = table.shard.shards >= 1 && table.shard.shard >= 0 && table.shard.shard < table.shard.shards;
-  if (!sane || file.text_attribute(group, "definition") != d.digest()) {
+  if (!sane || file.text_attribute(ensemble_group, "definition") != d.digest()) {
     refuse(name, "the file is damaged, or was written by another version; make it anew");
   }
   const auto count = size_of(file.open(below("member")).rows());
