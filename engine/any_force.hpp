@@ -203,7 +203,7 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
   /// @throws Error  if it takes part in those with another of its parts
   AnyForce& in_kick(char letter) {
     const std::string own = this->own_claims().kicks;
-    if (own.size() > 1 && own.find(letter, 1) != std::string::npos) {
+    if (own.size() > 1 && std::find(own.begin() + 1, own.end(), letter) != own.end()) {
       throw Error("kick = \"" + std::string(1, letter) + "\" is already that of another part of " + this->name() +
                       "; take one of the two out",
                   {.key = "kick", .value = "\"" + std::string(1, letter) + "\""});

@@ -48,9 +48,9 @@ void ShearingSheet<F, Real>::move(ParticleSystem<Real>& s, const Epicycle<Real>&
     if (s.low_words() == nullptr && !epicycle.turns()) {
       auto& x = s.positions();
       auto& v = s.velocities();
-      const auto move = simd_loop<Epicycle<double>::move>();
+      const auto loop = simd_loop<Epicycle<double>::move>();
       for_blocks(s.size(), [&](Index begin, Index end) {
-        move(epicycle, x.component(0), x.component(1), x.component(2), v.component(0), v.component(1), v.component(2),
+        loop(epicycle, x.component(0), x.component(1), x.component(2), v.component(0), v.component(1), v.component(2),
              begin, end);
       });
       return;
