@@ -76,11 +76,12 @@ struct Ewald {
     if (sums.charged == 0) return;
     const Ewald chosen = chosen_for(s.box(), sums.charged);
     const detail::SplitParts wanted = detail::wanted_parts(out, wave_kick);
-    if (wanted.near) PairForce<detail::ScreenedCharges>{{*chosen.alpha, cutoff}}.add_to(out, s);
+    const detail::ScreenedCharges near{*chosen.alpha, cutoff};
+    if (wanted.near) PairForce<detail::ScreenedCharges>{near}.add_to(out, s);
     if (!wanted.waves) return;
     const Spent spent("force", "ewald waves");
-    detail::add_self_energy(out, s, sums, *chosen.alpha);
-    detail::add_smooth_pairs(out, s, *chosen.alpha);
+    detail::add_self_energy(out, s, sums, near.alpha);
+    detail::add_smooth_pairs(out, s, near);
     chosen.add_waves(out, s, known.strongest);
   }
 

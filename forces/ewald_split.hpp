@@ -11,6 +11,7 @@
 #include "forces/pair_force.hpp"
 #include "numbers/exact_sum.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -75,10 +76,19 @@ template <class Real> PairTerms<Real> smooth_terms(double alpha, const Real& r2)
   return {energy, (energy - slope * terms.bell) / r2};
 }
 
+/// The near part of a split 1/r: 1/r and the polynomials of least degree that are nowhere further from -erf(alpha r)/r,
+/// and from its force, than parts of the values these have at r = 0, which are their largest. Kept until this thread
+/// asks for another one.
+/// @param error  that part; rounding is a few times 1e-16 of it
+/// @return one without terms if there would be too many
+const ChargeSeries& screened_series(double alpha, double range, double error);
+
 /// The near part, between pairs up to a cutoff.
 struct ScreenedCharges {
-  double alpha = 0;   ///< [1/length]
-  double radius = 0;  ///< [length]
+  double alpha = 0;                               ///< [1/length]
+  double radius = 0;                              ///< [length]
+  double error = 0;                               ///< of forces in lanes, see `screened_series`
+  PairPrecision precision = PairPrecision::full;  ///<
 
   static constexpr auto describe() {
     return part<ScreenedCharges>("electrostatic", "the near part of a sum over a lattice of charges",
@@ -86,6 +96,9 @@ struct ScreenedCharges {
   }
   double range() const { return radius; }
   double scale(double product) const { return 100 * product / (radius * radius); }  // at a tenth of the radius
+  const ChargeSeries& series() const {
+    return screened_series(alpha, radius, precision == PairPrecision::mixed ? std::max(error, 1e-7) : error);
+  }
   template <class Real> PairTerms<Real> operator()(const Real& r2, const Real& product) const {
     using std::sqrt, std::atan;
     const Real r = sqrt(r2), inverse = Real(1) / r;
@@ -211,14 +224,16 @@ template <class Real> const std::vector<SmoothPair<Real>>& smooth_pairs(const Pa
 }
 
 /// Takes out of the waves what the topology excludes or scales. Doubles are counted in whole units: the forces of the
-/// smooth part have a bound, and their sums no order.
-template <class Real> void add_smooth_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, double alpha) {
+/// smooth part have a bound, and their sums no order; up to the range of the near part they are its series, in lanes.
+/// @param near  with which the split goes
+template <class Real>
+void add_smooth_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, const ScreenedCharges& near) {
   if (s.topology() == nullptr) return;
-  for (const SmoothPair<Real>& one : smooth_pairs(s, alpha)) {
+  for (const SmoothPair<Real>& one : smooth_pairs(s, near.alpha)) {
     out.pair(one.i, one.j, one.force);
     out.energy(one.energy);
   }
 }
-template <> void add_smooth_pairs(ForceSink<double>& out, const ParticleSystem<double>& s, double alpha);
+template <> void add_smooth_pairs(ForceSink<double>& out, const ParticleSystem<double>& s, const ScreenedCharges& near);
 
 }  // namespace noether::detail

@@ -42,8 +42,8 @@ template <class Real> struct WaveFactors {
   }
 };
 
-template <class Real> struct Phase { Real c, s; };
-template <class Real> [[gnu::always_inline]] inline Phase<Real> phase_of(const WaveFactors<Real>& f, Index i) {
+template <class Real> struct WavePhase { Real c, s; };
+template <class Real> [[gnu::always_inline]] inline WavePhase<Real> phase_of(const WaveFactors<Real>& f, Index i) {
   const Real c0 = f.c[0][i], s0 = f.sign[0] * f.s[0][i], c1 = f.c[1][i], s1 = f.sign[1] * f.s[1][i];
   const Real c2 = f.c[2][i], s2 = f.sign[2] * f.s[2][i];
   const Real c01 = c0 * c1 - s0 * s1, s01 = s0 * c1 + c0 * s1;
@@ -60,7 +60,7 @@ inline void add_up_wave(const WaveFactors<Real>& factors, const Real* charges, I
   const WaveFactors<Real> f = factors;
   Counted<Real> re(0), im(0);
   for (Index i = 0; i < n; ++i) {
-    const Phase<Real> phase = phase_of(f, i);
+    const WavePhase<Real> phase = phase_of(f, i);
     if constexpr (std::is_same_v<Real, double>) {
       const double q = charges[i] * per_unit;
       re += static_cast<std::int64_t>(q * phase.c);
@@ -91,7 +91,7 @@ inline void add_wave_fields(const WaveFactors<Real>& factors, const ActingWave<R
 #pragma GCC ivdep
 #endif
   for (Index i = begin; i < end; ++i) {
-    const Phase<Real> phase = phase_of(f, i);
+    const WavePhase<Real> phase = phase_of(f, i);
     const Real t = phase.s * wave.re - phase.c * wave.im;
     x[i - begin] += t * wave.k[0];
     y[i - begin] += t * wave.k[1];

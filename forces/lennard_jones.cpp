@@ -143,10 +143,7 @@ void LennardJonesForce::check_types(const Topology* topology, const Box& box) co
     throw Error(
         "lennard_jones: tail = true is for a liquid without end, so it needs a periodic box; add a box or leave tail "
         "out");
-  if (precision == PairPrecision::mixed && !box.is_periodic())
-    throw Error(
-        "lennard_jones: precision = \"mixed\" needs a periodic box, but there is none; add a box or leave precision "
-        "out");
+  detail::check_precision(precision, box.is_periodic(), "lennard_jones");
   if (epsilon) return;
   if (topology == nullptr || topology->pair_kinds.empty()) {
     throw Error(

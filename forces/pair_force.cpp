@@ -1,11 +1,14 @@
 #include "forces/pair_force.hpp"
 
+#include "forces/charged_pairs_mixed_simd.hpp"
+#include "forces/charged_pairs_simd.hpp"
 #include "forces/pair_chunk_simd.hpp"
 #include "forces/pair_groups.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -13,7 +16,8 @@ namespace noether::detail {
 
 namespace {
 
-constexpr int bits_of_unit = 47;  // below the scale of a strong force
+// Below the scale of a strong force; those of mixed precision above these.
+constexpr int bits_of_unit = 47, bits_of_mixed_unit = 21;
 
 double force_unit_of(double scale) { return std::ldexp(1.0, std::ilogb(scale) + 1 - bits_of_unit); }
 
@@ -51,6 +55,60 @@ const NeighborSelection* selection_of(ForceSink<double>& out, const ParticleSyst
   return &selection;
 }
 
+/// Records with charges in the place of types, of nobody 0. Kept until this thread asks again.
+const double* records_with_charges(const ParticleSystem<double>& s, const NeighborList& list) {
+  thread_local AlignedVector<double> memory;
+  const std::vector<std::int32_t>& particles = list.particles_of_records();
+  const auto count = static_cast<Index>(particles.size());
+  memory.resize(4 * (particles.size() + 1));
+  double* const to = memory.data();
+  const double* const from = list.records();
+  const double* const q = s.column<Charge>().data();
+  const double by = std::sqrt(s.units().coulomb_constant);
+  for_blocks(count, [&](Index begin, Index end) {
+    for (Index r = begin; r < end; ++r) {
+      for (Index k = 0; k < 3; ++k) to[4 * r + k] = from[4 * r + k];
+      to[4 * r + 3] = by * q[particles[static_cast<std::size_t>(r)]];
+    }
+  });
+  for (Index k = 0; k < 3; ++k) to[4 * count + k] = from[4 * count + k];
+  to[4 * count + 3] = 0;
+  return to;
+}
+
+/// The same in whole numbers, with charges in floats. @param by  what charges are multiplied by
+const std::int32_t* whole_records_with_charges(const ParticleSystem<double>& s, const NeighborList& list, double by) {
+  thread_local AlignedVector<std::int32_t> memory;
+  const std::vector<std::int32_t>& particles = list.particles_of_records();
+  const auto count = static_cast<Index>(particles.size());
+  memory.resize(4 * (particles.size() + 1));
+  std::int32_t* const to = memory.data();
+  const std::int32_t* const from = list.whole_records();
+  const double* const q = s.column<Charge>().data();
+  const auto take = [&](Index r, double charge) {
+    for (Index k = 0; k < 3; ++k) to[4 * r + k] = from[4 * r + k];
+    to[4 * r + 3] = std::bit_cast<std::int32_t>(static_cast<float>(by * charge));
+  };
+  for_blocks(count, [&](Index begin, Index end) {
+    for (Index r = begin; r < end; ++r) take(r, q[particles[static_cast<std::size_t>(r)]]);
+  });
+  take(count, 0);
+  return to;
+}
+
+/// A series for lengths in another unit.
+ChargeSeries in_unit(const ChargeSeries& series, double unit) {
+  ChargeSeries other = series;
+  const double unit2 = unit * unit;
+  other.range2 /= unit2;
+  other.scale *= unit2;
+  other.switch_from2 /= unit2;
+  other.switch_inverse *= unit2;
+  for (double& one : other.energy) one *= unit;
+  for (double& one : other.force) one *= unit2 * unit;
+  return other;
+}
+
 }  // namespace
 
 std::array<int, 2> pair_types(const Topology* topology, const std::string& first, const std::string& second) {
@@ -73,6 +131,12 @@ void check_charges(bool there, std::string_view name) {
   if (there) return;
   throw Error(fmt::format(
       "force '{}' acts between charges, but the particles have none; give charges, or take the force out", name));
+}
+
+void check_precision(PairPrecision precision, bool periodic, std::string_view name) {
+  if (precision == PairPrecision::full || periodic) return;
+  throw Error(fmt::format(
+      "{}: precision = \"mixed\" needs a periodic box, but there is none; add a box or leave precision out", name));
 }
 
 double strongest_product(const ParticleSystem<double>& s) {
@@ -114,6 +178,49 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
           plan.loop(plan.potential, plan.end, {chunk.r2, chunk.product, 8 * chunk.rows}, chunk.energy, chunk.force);
           (care ? careful : quick)(filter, chunk, found);
         }
+      },
+      selection);
+}
+
+void add_charges_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s, const PairPlan& plan,
+                          const ChargeSeries& series, PairPrecision precision) {
+  const double* const charges = s.column<Charge>().data();
+  if (std::all_of(charges, charges + s.size(), [](double q) { return q == 0; })) return;
+  std::optional<NeighborList> own;
+  NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(plan.cutoff);
+  const bool mixed = precision == PairPrecision::mixed, sums = out.wants_energy() || out.wants_virial();
+  if (mixed) list.update(s, NeighborList::Numbers::whole);
+  if (!mixed || sums) list.update(s);
+  const PairLimits limits = limits_of(plan);
+  const double strongest = strongest_product(s), force_unit = limits.strongest / strongest_pair;
+  const double energy_unit = force_unit * std::ldexp(1.0, std::ilogb(plan.cutoff) + 1);
+  const std::size_t all = sums ? 1 : 0;
+  const bool plain = series.scale == 1 && series.offset == 0;
+  const std::size_t kind = !plain ? 2 : series.switch_inverse != 0 ? 1 : 0;
+  const NeighborSelection* const selection = selection_of(out, s, list, plan.types);
+  const ChargedPairKernels& kernels = charged_pair_kernels();
+  const auto quick = kernels.quick[kind][all], careful = kernels.careful[kind][all];
+  const ChargedPairField field{!mixed || sums ? records_with_charges(s, list) : nullptr, &series,
+                               strongest / (0x1.8p50 * force_unit), force_unit, energy_unit};
+  const auto sum_doubles = [&](const PairGroup& group, PairSums& found, bool care) {
+    (care ? careful : quick)(field, group, found);
+  };
+  if (!mixed) return add_pair_groups(out, s, list, {force_unit, energy_unit}, limits, sum_doubles, selection);
+  const double spacing = list.whole_spacing(), unit = std::ldexp(1.0, std::ilogb(plan.cutoff));
+  const double mixed_unit = std::ldexp(force_unit, bits_of_mixed_unit);
+  const ChargeSeries scaled = in_unit(series, unit);
+  const double by = std::sqrt(s.units().coulomb_constant * spacing / (unit * unit * unit * mixed_unit));
+  const MixedChargedField whole{whole_records_with_charges(s, list, by), &scaled, spacing * spacing / (unit * unit),
+                                strongest / (0x1.8p27 * mixed_unit * unit * unit)};
+  const ChargedPairMixedKernels& mixed_kernels = charged_pair_mixed_kernels();
+  const auto mixed_quick = mixed_kernels.quick[kind], mixed_careful = mixed_kernels.careful[kind];
+  add_pair_groups(
+      out, s, list, {mixed_unit, energy_unit}, limits,
+      [&](const PairGroup& group, PairSums& found, bool care) {
+        if (sums) sum_doubles(group, found, care);  // for energies and virials
+        const bool close = sums && found.close;
+        (care ? mixed_careful : mixed_quick)(whole, group, found);
+        found.close = found.close || close;
       },
       selection);
 }

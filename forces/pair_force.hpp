@@ -3,6 +3,8 @@
 
 #include "engine/charge.hpp"
 #include "engine/sums.hpp"
+#include "forces/charge_series_row.hpp"
+#include "forces/pair_precision.hpp"
 #include "forces/pairs.hpp"
 #include "forces/secant.hpp"
 #include "numbers/pack.hpp"
@@ -59,6 +61,16 @@ template <class P>
 concept AnswersExcluded = ChargedPairPotential<P> && requires(const P& potential, double r2, double product) {
   { potential.answers_excluded } -> std::convertible_to<bool>;
   { potential.answer_terms(r2, product) } -> std::convertible_to<PairTerms<double>>;
+};
+
+/// A potential between charges that is 1/r and a polynomial, for loops in lanes of its own, and what these compute in.
+///
+///     PairPrecision precision;
+///     const ChargeSeries& series() const;  // without terms: not with these parameters
+template <class P>
+concept HasChargeSeries = ChargedPairPotential<P> && requires(const P& potential) {
+  { potential.series() } -> std::convertible_to<ChargeSeries>;
+  { potential.precision } -> std::convertible_to<PairPrecision>;
 };
 
 template <class P>
@@ -300,6 +312,9 @@ struct PairPlan {
 /// Those of a plan, for scaled pairs.
 PairLimits limits_of(const PairPlan& plan);
 void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s, const PairPlan& plan);
+/// The same of charges, by their series.
+void add_charges_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s, const PairPlan& plan,
+                          const ChargeSeries& series, PairPrecision precision);
 /// The indices of two types; -1 both for no names. @throws Error  for one name alone, or a name that no type has
 std::array<int, 2> pair_types(const Topology* topology, const std::string& first, const std::string& second);
 void check_pair_scale(double scale);
@@ -362,6 +377,7 @@ template <PairPotential P> struct PairForce : P {
     check();
     detail::pair_types(s.topology(), first, second);
     if constexpr (charged) detail::check_charges(s.template has<Charge>(), name());
+    if constexpr (HasChargeSeries<P>) detail::check_precision(this->precision, s.box().is_periodic(), name());
   }
 
   template <class Real>
@@ -380,7 +396,7 @@ template <PairPotential P> struct PairForce : P {
                                   charged ? s.units().coulomb_constant : 0,
                                   detail::pair_types(s.topology(), first, second),
                                   name()};
-      detail::add_pairs_in_lanes(out, s, plan);
+      add_in_lanes(out, s, plan);
       detail::add_special_pairs(out, s, terms, detail::limits_of(plan));
       add_answers(out, s, detail::limits_of(plan));
     } else {
@@ -414,6 +430,14 @@ template <PairPotential P> struct PairForce : P {
   }
 
  private:
+  void add_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s, const detail::PairPlan& plan) const {
+    if constexpr (HasChargeSeries<P>) {
+      const ChargeSeries& series = P::series();
+      if (series.energy_terms > 0 && series.force_terms > 0 && cutoff_style == Cutoff::plain)
+        return detail::add_charges_in_lanes(out, s, plan, series, this->precision);
+    }
+    detail::add_pairs_in_lanes(out, s, plan);
+  }
   /// What the surrounding answers to an excluded pair, as `terms_of`.
   template <class Real> auto answers_of(const ParticleSystem<Real>& s) const requires AnswersExcluded<P> {
     return [this, charges = s.template column<Charge>().data(), types = detail::pair_types(s.topology(), first, second),

@@ -38,6 +38,12 @@ struct PairTotals {
   }
 };
 
+/// Which groups had pairs too close for quick sums when they were last summed: they are summed with care at once.
+/// Either gives the same sums.
+struct CloseGroups {
+  std::vector<std::uint8_t> last_time;
+};
+
 /// The lowest index that any thread names.
 class Lowest {
  public:
@@ -70,7 +76,8 @@ inline bool is_thrown(const ParticleSystem<double>& s, const NeighborList& list,
 }
 
 /// Adds what the neighbors of each particle do to it.
-/// @param kernel  (group, sums, careful): fills PairSums of a group; asked again with care if a pair is `close`
+/// @param kernel  (group, sums, careful): fills PairSums of a group; asked again with care if a pair is `close`, and at
+///   once if one was so the last time
 /// @param limits  those that `kernel` knows, and what messages call the force
 /// @param selection  of the list, up to date; null: all of it
 template <class Kernel>
@@ -79,6 +86,9 @@ void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, co
                      const NeighborSelection* selection = nullptr) {
   if (list.crowded() >= 0) return out.fail(detail::crowded(s, list.crowded(), list.range()));
   constexpr Index size = NeighborList::group_size;
+  const Index groups = selection != nullptr ? selection->groups() : list.groups();
+  std::vector<std::uint8_t>& were_close = out.workspace().get<CloseGroups>().last_time;
+  were_close.resize(static_cast<std::size_t>(groups));
   const bool sums = out.wants_energy() || out.wants_virial();
   double* a[3] = {out.accelerations().component(0), out.accelerations().component(1), out.accelerations().component(2)};
   const double* mass = s.masses().data();
@@ -89,7 +99,7 @@ void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, co
     PairTotals totals;
     PairSums found;
     for (Index g = begin / size; g < end / size; ++g) {
-      const NeighborList::Group one = list.group(g);
+      const NeighborList::Group one = selection != nullptr ? selection->group(list, g) : list.group(g);
       if (g + 1 < end / size) {  // so that what the next eight need is there in time
         const std::int32_t* next = one.particles + size;
         for (Index lane = 0; lane < size; ++lane) {
@@ -98,11 +108,12 @@ void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, co
           for (const double* column : a) __builtin_prefetch(column + i, 1);
         }
       }
-      const NeighborList::Group those = selection != nullptr ? selection->group(list, g) : one;
-      const PairGroup group{those.records, those.entries, those.rows};
-      kernel(group, found, false);
+      const PairGroup group{one.records, one.entries, one.rows};
+      std::uint8_t& close = were_close[static_cast<std::size_t>(g)];
+      kernel(group, found, close != 0);
+      if (found.close && close == 0) kernel(group, found, true);
+      close = found.close ? 1 : 0;
       if (found.close) {
-        kernel(group, found, true);
         for (Index lane = 0; lane < size; ++lane) {
           if (found.strong[lane]) overlapping.offer(one.particles[lane]);
         }
@@ -127,7 +138,7 @@ void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, co
     }
     return totals;
   };
-  const Index lanes = list.groups() * size;
+  const Index lanes = groups * size;
   if (sums) {
     const PairTotals totals = reduce(lanes, PairTotals{}, block);
     out.energy(totals.energy.times(units.energy) / 2);

@@ -130,6 +130,7 @@ struct ReactionField {
   std::optional<double> dielectric = {};  ///< relative permittivity outside; default: a conductor, where it is infinite
   std::optional<double> switched_from = {};  ///< where a switch begins [length]; default: there is none
   bool answers_excluded = false;             ///< the dielectric answers to excluded pairs and to each charge itself too
+  PairPrecision precision = PairPrecision::full;  ///<
 
   static constexpr auto describe() {
     return part<ReactionField>(
@@ -142,11 +143,22 @@ struct ReactionField {
                                              "where a switch as that of switch_c4 begins; default: there is none"),
         field<&ReactionField::answers_excluded>(
             "answers_excluded", "1",
-            "the dielectric answers to excluded pairs and each charge itself too, as in GROMACS"));
+            "the dielectric answers to excluded pairs and each charge itself too, as in GROMACS"),
+        field<&ReactionField::precision>("precision", "1", "mixed: forces of pairs in single precision"));
   }
   void check() const;
   double range() const { return radius; }
   double scale(double product) const { return 100 * product / (radius * radius); }  // at a tenth of the radius
+  ChargeSeries series() const {
+    const double k = answer(), range2 = radius * radius,
+                 from2 = switched_from.value_or(radius) * switched_from.value_or(radius);
+    ChargeSeries series{.range2 = range2, .energy_terms = 2, .force_terms = 1};
+    series.energy[0] = -1 / radius - k * range2;
+    series.energy[1] = k;
+    series.force[0] = -2 * k;
+    if (range2 > from2) series.switch_from2 = from2, series.switch_inverse = 1 / (range2 - from2);
+    return series;
+  }
   template <class Real> PairTerms<Real> operator()(const Real& r2, const Real& product) const {
     using std::sqrt;
     const double k = answer(), last = 1 / radius + k * radius * radius;

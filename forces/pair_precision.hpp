@@ -20,4 +20,9 @@ template <> struct EnumNames<PairPrecision> {
       {{PairPrecision::full, "double"}, {PairPrecision::mixed, "mixed"}}};
 };
 
+namespace detail {
+/// @throws Error  for mixed precision without a periodic box
+void check_precision(PairPrecision precision, bool periodic, std::string_view name);
+}  // namespace detail
+
 }  // namespace noether

@@ -135,11 +135,12 @@ void ParticleMeshEwald::add_to(ForceSink<double>& out, const ParticleSystem<doub
     own.tiles.lay(own.layout.points, own.layout.order - 1, sums.charged);
   }
   const detail::SplitParts wanted = detail::wanted_parts(out, wave_kick);
-  if (wanted.near) PairForce<detail::ScreenedCharges>{{own.layout.alpha, cutoff}}.add_to(out, s);
+  const detail::ScreenedCharges near{own.layout.alpha, cutoff, 1e-4 * relative_error, precision};
+  if (wanted.near) PairForce<detail::ScreenedCharges>{near}.add_to(out, s);
   if (!wanted.waves) return;
   const Spent spent("force", "particle_mesh_ewald waves");
-  detail::add_self_energy(out, s, sums, own.layout.alpha);
-  detail::add_smooth_pairs(out, s, own.layout.alpha);
+  detail::add_self_energy(out, s, sums, near.alpha);
+  detail::add_smooth_pairs(out, s, near);
   own.tiles.sort(s, known.charges.data());
   const bool all = out.wants_energy() || out.wants_virial();
   detail::MeshSums waves;

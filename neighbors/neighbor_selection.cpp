@@ -24,61 +24,76 @@ Index room_of(Index rows) { return (rows + size - 1) / size * size; }
 
 }  // namespace
 
-/// A particle of a group: whether it acts at all, and on a neighbor.
-class NeighborSelection::Own {
- public:
-  Own(const NeighborSelection& selection, const NeighborList& list, const NeighborList::Group& group, Index lane)
-      : list_(list), nobody_(nobody_of(list)) {
-    if (group.particles[lane] < 0) return;
-    const std::uint8_t* const row = selection.acts_.data() + type_of(list, group.records[lane]) * selection.types_;
-    if (std::find(row, row + selection.types_, 1) != row + selection.types_) acts_ = row;
+void NeighborSelection::form_groups(const NeighborList& list) {
+  particles_.clear();
+  lanes_.clear();
+  places_.clear();
+  const auto add = [&](std::int32_t particle, std::int32_t record, Index place) {
+    particles_.push_back(particle);
+    lanes_.push_back(record);
+    places_.push_back(place);
+  };
+  for (Index g = 0; g < list.groups(); ++g) {
+    const NeighborList::Group group = list.group(g);
+    for (Index lane = 0; lane < size; ++lane) {
+      if (group.particles[lane] < 0) continue;
+      const std::uint8_t* const row = acts_.data() + type_of(list, group.records[lane]) * types_;
+      if (std::find(row, row + types_, 1) != row + types_)
+        add(group.particles[lane], group.records[lane], size * g + lane);
+    }
   }
-  bool acts() const { return acts_ != nullptr; }
-  bool acts_on(std::int32_t entry) const { return entry != nobody_ && acts_[type_of(list_, entry)] != 0; }
+  // A lane without a particle stands where another one does, and has no neighbors.
+  while (particles_.size() % size != 0) add(-1, lanes_.back(), -1);
+  rows_.resize(particles_.size() / size);
+}
 
- private:
-  const NeighborList& list_;
-  std::int32_t nobody_;
-  const std::uint8_t* acts_ = nullptr;  ///< on each type
-};
+/// Calls `visit(entry, shell)` for the neighbors of a particle of the list on which it acts.
+template <class Visit>
+void NeighborSelection::for_entries(const NeighborList& list, Index place, const Visit& visit) const {
+  if (place < 0) return;
+  const std::int32_t nobody = nobody_of(list);
+  const NeighborList::Group group = list.group(place / size);
+  const Index lane = place % size;
+  const std::uint8_t* const acts = acts_.data() + type_of(list, group.records[lane]) * types_;
+  Index row = 0;
+  for (int shell = 0; shell < NeighborList::shells; ++shell) {
+    for (; row < list.rows(place / size, shell); ++row) {
+      const std::int32_t entry = group.entries[size * row + lane];
+      if (entry != nobody && acts[type_of(list, entry)] != 0) visit(entry, shell);
+    }
+  }
+}
 
 NeighborSelection::Rows NeighborSelection::count(const NeighborList& list, Index g) const {
-  const NeighborList::Group group = list.group(g);
   Rows found;
   for (Index lane = 0; lane < size; ++lane) {
-    const Own own(*this, list, group, lane);
-    std::int32_t kept = 0;
-    Index row = 0;
-    for (int shell = 0; shell < NeighborList::shells && own.acts(); ++shell) {
-      for (; row < list.rows(g, shell); ++row) kept += own.acts_on(group.entries[size * row + lane]) ? 1 : 0;
-      std::int32_t& most = found.rows[at(shell)];
-      most = std::max(most, kept);
+    std::array<std::int32_t, NeighborList::shells> kept{};
+    for_entries(list, places_[at(size * g + lane)], [&](std::int32_t, int shell) { ++kept[at(shell)]; });
+    std::int32_t within = 0;
+    for (std::size_t shell = 0; shell < kept.size(); ++shell) {
+      within += kept[shell];
+      found.rows[shell] = std::max(found.rows[shell], within);
     }
   }
   return found;
 }
 
 void NeighborSelection::take(const NeighborList& list, Index g) {
-  const NeighborList::Group group = list.group(g);
-  const Index all = list.rows(g, NeighborList::shells - 1);
   std::int32_t* const entries = entries_.data() + rows_[at(g)].begin;
   std::fill_n(entries, size * room_of(rows_[at(g)].rows.back()), nobody_of(list));
   for (Index lane = 0; lane < size; ++lane) {
-    const Own own(*this, list, group, lane);
     std::int32_t* to = entries + lane;
-    for (Index row = 0; row < all && own.acts(); ++row) {
-      const std::int32_t entry = group.entries[size * row + lane];
-      if (!own.acts_on(entry)) continue;
+    for_entries(list, places_[at(size * g + lane)], [&](std::int32_t entry, int) {
       *to = entry;
       to += size;
-    }
+    });
   }
 }
 
 void NeighborSelection::take(const NeighborList& list) {
-  rows_.resize(at(list.groups()));
+  form_groups(list);
   const auto for_groups = [&](const auto& body) {
-    for_blocks(size * list.groups(), [&](Index begin, Index end) {
+    for_blocks(size * groups(), [&](Index begin, Index end) {
       for (Index g = begin / size; g < end / size; ++g) body(g);
     });
   };
@@ -94,11 +109,9 @@ void NeighborSelection::take(const NeighborList& list) {
 }
 
 NeighborList::Group NeighborSelection::group(const NeighborList& list, Index g) const {
-  NeighborList::Group group = list.group(g);
   const Rows& own = rows_[at(g)];
-  group.entries = entries_.data() + own.begin;
-  group.rows = own.rows[at(list.shell())];
-  return group;
+  return {particles_.data() + size * g, lanes_.data() + size * g, entries_.data() + own.begin,
+          own.rows[at(list.shell())]};
 }
 
 }  // namespace noether

@@ -10,8 +10,9 @@
 
 namespace noether {
 
-/// The groups of a neighbor list with those entries alone whose types act on each other: where only the oxygens of
-/// water have a Lennard-Jones force, a ninth of the pairs. Entries keep their order, and shells hold what they held.
+/// Of a neighbor list those particles and entries alone whose types act on each other: where only the oxygens of water
+/// have a Lennard-Jones force, a ninth of the pairs. Particles that act follow each other in groups of their own, so
+/// that lanes are full; entries keep their order, and shells hold what they held.
 /// @cost O(entries) after a search; the memory of the entries that are kept
 class NeighborSelection {
  public:
@@ -30,23 +31,27 @@ class NeighborSelection {
     }
     if (!known) take(list);
   }
-  /// Of the list that it was taken from: `list.group(g)` with fewer rows.
+  Index groups() const { return static_cast<Index>(rows_.size()); }
+  /// Eight particles that act, of the list that they were taken from, as `NeighborList::group`.
   NeighborList::Group group(const NeighborList& list, Index g) const;
 
  private:
-  class Own;
   struct Rows {
     std::int64_t begin = 0;
     std::array<std::int32_t, NeighborList::shells> rows{};
   };
 
   void take(const NeighborList& list);
+  void form_groups(const NeighborList& list);
+  template <class Visit> void for_entries(const NeighborList& list, Index place, const Visit& visit) const;
   Rows count(const NeighborList& list, Index g) const;
   void take(const NeighborList& list, Index g);
 
   std::uint64_t edition_ = 0;
   int types_ = 0;
-  std::vector<std::uint8_t> acts_;  ///< shape (types, types)
+  std::vector<std::uint8_t> acts_;               ///< shape (types, types)
+  std::vector<std::int32_t> particles_, lanes_;  ///< as those of the list
+  std::vector<Index> places_;                    ///< of a lane: group and lane of the list; -1: nobody
   std::vector<Rows> rows_;
   AlignedVector<std::int32_t> entries_;
 };

@@ -1,0 +1,157 @@
+#include "forces/charged_pairs_simd.hpp"
+
+#include "forces/lennard_jones_lanes_simd.hpp"
+#include "forces/pair_lanes_simd.hpp"
+#include "numbers/reciprocal_sqrt_simd.hpp"
+
+namespace noether::NOETHER_SIMD_LEVEL {
+
+namespace {
+
+/// x, y, z and charge of as many records as there are lanes.
+struct ChargedPoints {
+  Points place;
+  Vector charge;
+};
+
+/// As `load_points`, with the fourth numbers.
+HWY_INLINE ChargedPoints load_charged(const double* records, const std::int32_t* offsets) {
+  const auto record = [&](int k) { return records + static_cast<std::ptrdiff_t>(offsets[k]); };
+  const Lanes d;
+#if HWY_TARGET == HWY_SCALAR
+  const double* one = record(0);
+  return {{hn::Set(d, one[0]), hn::Set(d, one[1]), hn::Set(d, one[2])}, hn::Set(d, one[3])};
+#elif HWY_MAX_BYTES == 16
+  const double *one = record(0), *two = record(1);
+  const Vector a = hn::LoadU(d, one), b = hn::LoadU(d, two), c = hn::LoadU(d, one + 2), e = hn::LoadU(d, two + 2);
+  return {{hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, c, e)},
+          hn::InterleaveUpper(d, c, e)};
+#elif HWY_MAX_BYTES >= 64
+  const auto two = [&](int k) {  // records k and k + 2
+    return _mm512_mask_broadcast_f64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(record(k))), 0xf0,
+                                       _mm256_loadu_pd(record(k + 2)));
+  };
+  const __m512d a = two(0), b = two(1), c = two(4), e = two(5);
+  const __m512d xz_low = _mm512_unpacklo_pd(a, b), xz_high = _mm512_unpacklo_pd(c, e);
+  const __m512d yq_low = _mm512_unpackhi_pd(a, b), yq_high = _mm512_unpackhi_pd(c, e);
+  static_cast<void>(d);
+  return {{Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0x88)}, Vector{_mm512_shuffle_f64x2(yq_low, yq_high, 0x88)},
+           Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0xdd)}},
+          Vector{_mm512_shuffle_f64x2(yq_low, yq_high, 0xdd)}};
+#else
+  const auto two = [&](int k, int from) {  // of records k and k + 2
+    return Vector{_mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(record(k) + from)),
+                                       _mm_loadu_pd(record(k + 2) + from), 1)};
+  };
+  const Vector a = two(0, 0), b = two(1, 0), c = two(0, 2), e = two(1, 2);
+  return {{hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, c, e)},
+          hn::InterleaveUpper(d, c, e)};
+#endif
+}
+
+enum class Series : std::uint8_t { two_terms, switched, any };
+
+/// sum_k coefficients[k] t^k of several t: their chains go side by side.
+template <Series kind, int n>
+HWY_INLINE void polynomial(const double* coefficients, int terms, const Vector (&t)[n], Vector (&sum)[n]) {
+  const Lanes d;
+  if constexpr (kind == Series::any) {
+    const Vector last = hn::Set(d, coefficients[terms - 1]);
+    for (int k = 0; k < n; ++k) sum[k] = last;
+    for (int term = terms - 2; term >= 0; --term) {
+      const Vector one = hn::Set(d, coefficients[term]);
+      for (int k = 0; k < n; ++k) sum[k] = hn::MulAdd(sum[k], t[k], one);
+    }
+  } else {
+    const Vector first = hn::Set(d, coefficients[0]), second = hn::Set(d, coefficients[1]);
+    for (int k = 0; k < n; ++k) sum[k] = hn::MulAdd(second, t[k], first);
+  }
+}
+
+/// Forces of one register of particles and their neighbors, some rows at a time: each step of one waits for the step
+/// before, and those of the others fill the time.
+template <Series kind, bool sums, class Sum>
+HWY_INLINE void sum_lanes(const ChargedPairField& field, const PairGroup& group, std::ptrdiff_t first, PairSums& out) {
+  constexpr int n = std::is_same_v<Sum, QuickSum> ? 4 : 1;
+  const Lanes d;
+  const ChargeSeries& series = *field.series;
+  LaneSums<sums, Sum> all(field.force_unit, field.energy_unit);
+  const ChargedPoints own = load_charged(field.records, group.records + first);
+  const Vector range2 = hn::Set(d, series.range2), scale = hn::Set(d, series.scale), offset = hn::Set(d, series.offset);
+  Vector nearest = hn::Set(d, 1e300);
+  const std::int32_t* entries = group.entries + first;
+  std::ptrdiff_t row = 0;
+  for (; row < group.rows; row += n, entries += 8 * n) {
+    Vector dx[n], dy[n], dz[n], r2[n], product[n], t[n], inverse[n], force[n], energy[n];
+    for (int k = 0; k < n; ++k) {
+      __builtin_prefetch(entries + 8 * (k + rows_asked_ahead));
+      const ChargedPoints other = load_charged(field.records, entries + 8 * k);
+      const Distances pair = distances(own.place, other.place);
+      dx[k] = pair.dx, dy[k] = pair.dy, dz[k] = pair.dz, r2[k] = pair.r2;
+      product[k] = hn::Mul(own.charge, other.charge);
+    }
+    reciprocal_sqrt(d, r2, inverse);
+    for (int k = 0; k < n; ++k) t[k] = kind == Series::any ? hn::MulAdd(r2[k], scale, offset) : r2[k];
+    constexpr bool energies = sums || kind == Series::switched;
+    if constexpr (energies) {
+      polynomial<kind>(series.energy, series.energy_terms, t, energy);
+      for (int k = 0; k < n; ++k) energy[k] = hn::Add(inverse[k], energy[k]);
+    }
+    if constexpr (kind == Series::any) {
+      polynomial<kind>(series.force, series.force_terms, t, force);
+    } else {
+      for (int k = 0; k < n; ++k) force[k] = hn::Set(d, series.force[0]);
+    }
+    for (int k = 0; k < n; ++k) force[k] = hn::MulAdd(hn::Mul(inverse[k], inverse[k]), inverse[k], force[k]);
+    for (int k = 0; k < n; ++k) {
+      if constexpr (kind == Series::switched) {
+        const Vector by = hn::Set(d, series.switch_inverse);
+        const Vector part = hn::ZeroIfNegative(hn::Mul(hn::Sub(r2[k], hn::Set(d, series.switch_from2)), by));
+        Vector s, slope;
+        switch_off<LennardJonesStyle::switch_c4>(d, part, s, slope);
+        const Vector along = hn::Mul(hn::Mul(energy[k], slope), hn::Add(by, by));
+        force[k] = hn::MulSub(s, force[k], along);
+        energy[k] = hn::Mul(energy[k], s);
+      }
+      nearest = lesser(nearest, r2[k]);
+      Vector pair_energy = hn::Zero(d);
+      if constexpr (sums) pair_energy = hn::Mul(product[k], energy[k]);
+      all.add(hn::Lt(r2[k], range2), pair_energy, hn::Mul(product[k], force[k]), dx[k], dy[k], dz[k]);
+    }
+  }
+  all.store(row, first, out);
+  out.close = out.close || !hn::AllTrue(d, hn::Ge(nearest, hn::Set(d, field.close2)));
+}
+
+template <Series kind, bool sums, class Sum>
+void sum_pairs(const ChargedPairField& field, const PairGroup& group, PairSums& out) {
+  out.close = false;
+  if (group.rows == 0) {
+    __builtin_memset(&out, 0, sizeof out);
+    return;
+  }
+  for (std::ptrdiff_t first = 0; first < 8; first += lanes) sum_lanes<kind, sums, Sum>(field, group, first, out);
+}
+
+template <class Sum> constexpr void fill(SumChargedPairs (&table)[3][2]) {
+  table[0][0] = sum_pairs<Series::two_terms, false, Sum>;
+  table[0][1] = sum_pairs<Series::two_terms, true, Sum>;
+  table[1][0] = sum_pairs<Series::switched, false, Sum>;
+  table[1][1] = sum_pairs<Series::switched, true, Sum>;
+  table[2][0] = sum_pairs<Series::any, false, Sum>;
+  table[2][1] = sum_pairs<Series::any, true, Sum>;
+}
+
+constexpr ChargedPairKernels all_kernels() {
+  ChargedPairKernels kernels{};
+  fill<QuickSum>(kernels.quick);
+  fill<CarefulSum>(kernels.careful);
+  return kernels;
+}
+
+}  // namespace
+
+extern const ChargedPairKernels charged_pair_kernels;
+constinit const ChargedPairKernels charged_pair_kernels = all_kernels();
+
+}  // namespace noether::NOETHER_SIMD_LEVEL
