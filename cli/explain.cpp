@@ -27,6 +27,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace noether {
@@ -41,6 +42,7 @@ struct Explanation {
   Index particles = 0, constraints = 0;
   std::map<char, int> flows;                    ///< stages of one step, by letter, the last joined to the next first
   std::string kicks, inexact;                   ///< letters that evaluate forces, and those that are no exact flows
+  std::map<char, int> of_kicks;                 ///< evaluations of the forces of each kick in one step
   std::map<char, int> of_kernel;                ///< evaluations of the forces in one step, by letters of kernels
   int behind_kicks = 0;                         ///< of these, those that G may take from a kick B before it
   std::string processing;                       ///< what a corrector or a kernel makes of the scheme
@@ -62,6 +64,20 @@ void count_flows(const FittedWord& word, std::map<char, int>& flows) {
   const std::vector<Stage>& stages = word.stages;
   for (const Stage& stage : stages) ++flows[stage.letter];
   if (word.joins && stages.size() > 1 && stages.front().letter == stages.back().letter) --flows[stages.front().letter];
+}
+
+/// How often a kick follows something that has moved particles, in steps that follow each other.
+int evaluations_of(const FittedWord& word, char kick, std::string_view moves) {
+  int count = 0;
+  bool moved = false;
+  for (int step = 0; step < 2; ++step) {  // the first one tells what has moved before the second
+    count = 0;
+    for (const Stage& stage : word.stages) {
+      if (stage.letter == kick && std::exchange(moved, false)) ++count;
+      moved = moved || moves.find(stage.letter) != std::string_view::npos;
+    }
+  }
+  return count;
 }
 
 /// Letters of kernels evaluate forces twice.
@@ -217,6 +233,7 @@ void explain_scheme(const Scene& scene, Explanation& e) {
   }
   e.corrector = static_cast<int>(scheme.before.size());
   e.kicks = hamiltonian.claims().kicks;
+  for (const char kick : e.kicks) e.of_kicks[kick] = evaluations_of(fitted, kick, hamiltonian.claims().timed);
   for (const char letter : e.kicks) e.evaluations += e.flows.contains(letter) ? e.flows.at(letter) : 0;
   for (const auto& [letter, count] : e.of_kernel) e.evaluations += count;
   e.inexact = hamiltonian.claims().inexact;
@@ -291,8 +308,27 @@ Explanation explained(const Scene& scene) {
   return e;
 }
 
+/// A force in the kicks of a letter; of one that is in several, the part in these.
+std::string force_in_kick(const SceneForce& force, char letter) {
+  const SceneValue* waves = force.effective.find("wave_kick");
+  const std::string* of_waves = waves != nullptr ? waves->get<std::string>() : nullptr;
+  if (of_waves == nullptr) return force.name;
+  return force.name + (*of_waves == std::string(1, letter) ? " (waves)" : " (near part)");
+}
+
+/// The forces of a kick, where kicks have several letters.
+std::string forces_in_kick(char letter, const Scene& scene) {
+  std::vector<std::string> names;
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    const bool kicks = !force.letter && force.force.claims().kicks.find(letter) != std::string::npos;
+    if (kicks) names.push_back(force_in_kick(force, letter));
+  }
+  return fmt::format("kicks by {}", fmt::join(names, ", "));
+}
+
 /// What the part that gives a letter calls its flow.
 std::string flow_of(char letter, const Scene& scene, std::string_view kicks) {
+  if (kicks.size() > 1 && kicks.find(letter) != std::string::npos) return forces_in_kick(letter, scene);
   const auto meaning_in = [&](const auto& kinds, const auto& is_used) {
     std::string found;
     for (const auto& kind : kinds) {
@@ -311,13 +347,7 @@ std::string flow_of(char letter, const Scene& scene, std::string_view kicks) {
       return std::any_of(h.forces.begin(), h.forces.end(), [&](const auto& f) { return f.name == name; });
     });
   }
-  if (found.empty() && kicks.find(letter) != std::string::npos) {
-    std::vector<std::string> names;
-    for (const SceneForce& force : h.forces) {
-      if (force.force.claims().kicks.find(letter) != std::string::npos) names.push_back(force.name);
-    }
-    found = fmt::format("kicks by {}", fmt::join(names, ", "));
-  }
+  if (found.empty() && kicks.find(letter) != std::string::npos) found = forces_in_kick(letter, scene);
   return found.empty() ? "flows" : found;
 }
 
@@ -331,12 +361,12 @@ std::string meaning(char letter, const Scene& scene, const Explanation& e) {
   if (const auto kernel = e.of_kernel.find(letter); kernel != e.of_kernel.end())
     return flow + ", " + counted(kernel->second, "force evaluation");
   if (e.kicks.find(letter) == std::string::npos) return flow;
+  if (e.kicks.size() > 1) return fmt::format("{}, {}", flow, counted(e.of_kicks.at(letter), "force evaluation"));
   int kicks = 0;
   for (const char one : e.kicks) kicks += e.flows.contains(one) ? e.flows.at(one) : 0;
   int own = e.evaluations;
   for (const auto& [one, count] : e.of_kernel) own -= count;
   if (own == kicks) return flow + ", one force evaluation each";
-  if (e.kicks.size() > 1) return fmt::format("{}, {} of all kicks together", flow, counted(own, "force evaluation"));
   return fmt::format("{}, {}: a kick where nothing has moved uses the forces again", flow,
                      counted(own, "force evaluation"));
 }

@@ -170,6 +170,21 @@ TEST_CASE("evaluate tells LAMMPS's pressure, and none where there is none", "[cl
   CHECK_FALSE(has(output(open, "evaluate scene.toml"), "pressure"));
 }
 
+TEST_CASE("explain tells the forces of each kick of multiple time steps and their evaluations, and a run their cost",
+          "[cli][explain][respa]") {
+  const SceneFolder folder;
+  const std::string scene = std::string(NOETHER_SOURCE_DIR) + "/tests/scenes/good/multiple_time_steps.toml";
+  const std::string text = output(folder, "explain " + scene);
+  INFO(text);
+  CHECK(has(text, "\n  4 x A: drifts\n"));
+  CHECK(has(text, "\n  6 x B: kicks by bonded, 4 force evaluations\n"));
+  CHECK(has(text, "\n  3 x C: kicks by lennard_jones, particle_mesh_ewald (near part), 2 force evaluations\n"));
+  CHECK(has(text, "\n  1 x D: kicks by particle_mesh_ewald (waves), 1 force evaluation\n"));
+  const std::string report = output(folder, "run " + scene + " --json --cost --out told");
+  for (const char* name : {"bonded", "lennard_jones", "particle_mesh_ewald", "particle_mesh_ewald waves"})
+    CHECK(has(report, "\"kind\":\"force\",\"name\":\"" + std::string(name) + "\""));
+}
+
 TEST_CASE("explain counts the evaluations of kernels, and kicks of forces that have their letters", "[cli][explain]") {
   const SceneFolder folder;
   for (const std::string letter : {"L", "G"}) {
@@ -178,7 +193,7 @@ TEST_CASE("explain counts the evaluations of kernels, and kicks of forces that h
                            " --set 'hamiltonian.force=[{type=\"gravity\"}, {type=\"harmonic_field\", k=0.1, kick=\"" +
                            letter + "\"}]'");
     INFO(text);
-    CHECK(has(text, "\n  1 x " + letter + ": kicks by harmonic_field, 2 force evaluations of all kicks together\n"));
+    CHECK(has(text, "\n  1 x " + letter + ": kicks by harmonic_field, 1 force evaluation\n"));
   }
   const auto kernel = [&](const std::string& of, const std::string& coordinates) {
     return output(folder,
