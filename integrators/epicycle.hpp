@@ -77,6 +77,22 @@ template <class Real> class Epicycle {
     all.v += Vec3<Real>(tilt_in_shear_ * (v0[1] + (v0[1] + dw)), dw, -tilt_z_ * (z0 + (z0 + dz)));
     return all;
   }
+  /// The same for many particles, columns apart and without half turns: v, w, q hold (x', w, z') and become what they
+  /// are after it, dx, dy, dz are the changes. In lanes where the compiler finds some.
+  static void change_in_shear(const Epicycle& e, const Real* __restrict z, Real* __restrict v, Real* __restrict w,
+                              Real* __restrict q, Real* __restrict dx, Real* __restrict dy, Real* __restrict dz,
+                              Index count) {
+    for (Index i = 0; i < count; ++i) {
+      const Real a = v[i] + e.tilt_in_shear_ * w[i], dw = -e.half_ * a;
+      const Real b = q[i] - e.tilt_z_ * z[i], moved = e.across_z_ * b;
+      dx[i] = e.across_ * a;
+      dy[i] = e.glide_ * w[i] - e.bend_ * a;
+      dz[i] = moved;
+      v[i] += e.tilt_in_shear_ * (w[i] + (w[i] + dw));
+      w[i] += dw;
+      q[i] += -e.tilt_z_ * (z[i] + (z[i] + moved));
+    }
+  }
   /// Whether it has half turns, which `move` leaves out.
   bool turns() const { return turns_; }
 
