@@ -59,6 +59,17 @@ void check_forces_file(const std::filesystem::path& file, const Scene& scene) {
   }
 }
 
+Json json_of(const LatticeAccuracy& of) {
+  Json::Members members = {{"asked", of.asked},     {"expected", of.expected},
+                           {"reached", of.reached}, {"sampled", std::int64_t{of.sampled}},
+                           {"alpha", of.alpha},     {"kmax", of.kmax ? Json(*of.kmax) : Json()}};
+  if (of.order > 0) {
+    members.emplace_back("mesh", Json::list({of.mesh[0], of.mesh[1], of.mesh[2]}));
+    members.emplace_back("order", of.order);
+  }
+  return Json::object(members);
+}
+
 Json json_of(const Evaluation& e, const std::vector<std::string>& warnings) {
   Json::Members terms;
   for (const auto& [name, energy] : e.terms) terms.emplace_back(name, energy);
@@ -75,8 +86,26 @@ Json json_of(const Evaluation& e, const std::vector<std::string>& warnings) {
                            {"pressure", e.pressure},
                            {"force_max", e.force_max},
                            {"gradient_error", e.gradient_error}};
+  if (!e.lattices.empty()) {
+    Json::Members lattices;
+    for (const auto& [name, one] : e.lattices) lattices.emplace_back(name, json_of(one));
+    members.emplace_back("force_errors", Json::object(lattices));
+  }
   if (!warnings.empty()) members.emplace_back("warnings", Json::list_of(warnings));
   return Json::object(members);
+}
+
+/// How far a sum over a lattice of charges is from Ewald's, and what it has chosen.
+void print_accuracy(const std::string& name, const LatticeAccuracy& of, const UnitSystem& units, std::size_t width) {
+  const std::string per_length = units.is_reduced() ? "" : fmt::format(" 1/{}", units.length);
+  const std::string waves = of.kmax ? fmt::format("waves up to {:.4g}{}", *of.kmax, per_length)
+                                    : fmt::format("a mesh of {} x {} x {}, splines of order {}", of.mesh[0], of.mesh[1],
+                                                  of.mesh[2], of.order);
+  fmt::print("{:<{}}{:.2g} of C <q^2> (n/V)^(2/3), against Ewald's sum in 113 bits at {}{}\n", "error of forces", width,
+             of.reached, of.sampled < of.charged ? fmt::format("{} of ", of.sampled) : "",
+             counted(of.charged, "charge"));
+  fmt::print("  {:<{}}asked {:.2g}, expected {:.2g}; alpha {:.4g}{}, {}\n", name, width - 2, of.asked, of.expected,
+             of.alpha, per_length, waves);
 }
 
 void print_text(const Scene& scene, const Evaluation& e) {
@@ -98,6 +127,7 @@ void print_text(const Scene& scene, const Evaluation& e) {
                units.is_reduced() ? "" : fmt::format(" {}/{}^3", units.energy, units.length));
   }
   fmt::print("{:<{}}{}\n", "largest force", width, with_unit(e.force_max, dimensions::force));
+  for (const auto& [name, one] : e.lattices) print_accuracy(name, one, *scene.units, width);
   if (!e.gradient_error) return;
   const Index particles = scene.particles.size(), asked = e.gradient_asked;
   fmt::print("{:<{}}{:.2g} of the largest force{}{}\n", "force against -grad U", width, *e.gradient_error,
@@ -138,7 +168,8 @@ void add_evaluate_command(CLI::App& app, const Parts& parts, int& exit_code) {
   command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
-  command->add_flag("--check", given->check, "compare every force with differences of its energy");
+  command->add_flag("--check", given->check,
+                    "compare every force with differences of its energy, and Ewald's sums with 113 bits");
   command->add_flag("--json", given->json, "report as one line of JSON");
   command->callback([given, &parts, &exit_code] { exit_code = evaluate_scene(*given, parts); });
 }

@@ -113,10 +113,13 @@ SlopeErrors errors_by_differences(AnyForce<Real> force, ParticleSystem<Real> s, 
   return {forces.relative(), torques.relative()};
 }
 
-/// The force in extended precision, where it and the system allow that.
+/// The force in extended precision, where it and the system allow that, and where it is the same force: what a force
+/// names as its truth is another one, whose slopes tell nothing of its own.
 std::optional<AnyForce<Quad>> asked_in_quad(const AnyForce<double>& force, const ParticleSystem<double>& s) {
   if (s.size() > most_asked_in_quad) return {};
-  return force.in_quad();
+  std::optional<AnyForce<Quad>> wide = force.in_quad();
+  if (wide && wide->signature() != force.signature()) return {};
+  return wide;
 }
 
 }  // namespace

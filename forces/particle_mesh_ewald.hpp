@@ -92,7 +92,7 @@ struct ParticleMeshEwald {
   /// The same sum without a mesh, for truth: right to 1e-13, or with the alpha that is given.
   Ewald reference() const;
 
- private:
+  /// The mesh for so many charges in the box of these particles, and its alpha.
   detail::MeshLayout layout_for(const ParticleSystem<double>& s, Index charged) const;
 };
 

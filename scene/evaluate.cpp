@@ -1,6 +1,7 @@
 #include "scene/evaluate.hpp"
 
 #include "engine/bodies.hpp"
+#include "engine/sites.hpp"
 #include "forces/check_gradient.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "monitors/pressure.hpp"
@@ -107,6 +108,10 @@ Evaluation evaluate(const Scene& scene, bool check) {
     const ForceClaims claims = term.force.claims();
     const bool failed = sink.failure().has_value();
     if (failed && result.outcome.ok()) result.outcome = outcome_of(*sink.failure(), s);
+    if (check && !failed) {
+      const auto accuracy = lattice_accuracy(term.force, has_bodies(s) ? Sites<double>(s).particles() : s);
+      if (accuracy) result.lattices.emplace_back(numbered(term.name, result.terms), *accuracy);
+    }
     const double potential = failed || !claims.energy ? nan : sink.potential();
     result.terms.emplace_back(numbered(term.name, result.terms), potential);
     result.potential += potential;
@@ -128,6 +133,7 @@ Evaluation evaluate(const Scene& scene, bool check) {
   if (!result.outcome.ok()) {
     result.force_max = nan;
     result.gradient_error.reset();
+    result.lattices.clear();
   }
   return result;
 }
