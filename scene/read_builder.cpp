@@ -4,6 +4,7 @@
 #include "scene/block.hpp"
 #include "scene/builders.hpp"
 #include "scene/foreign_names.hpp"
+#include "scene/ionic_crystal.hpp"
 #include "scene/water_box.hpp"
 
 #include <fmt/format.h>
@@ -28,9 +29,9 @@ template <class Builder> BuilderKind builder_kind() {
 }  // namespace
 
 const std::vector<BuilderKind>& builders() {
-  static const std::vector<BuilderKind> all = {builder_kind<Lattice>(), builder_kind<Liquid>(),
+  static const std::vector<BuilderKind> all = {builder_kind<Lattice>(),       builder_kind<Liquid>(),
                                                builder_kind<PolymerChains>(), builder_kind<WaterBox>(),
-                                               builder_kind<Block>()};
+                                               builder_kind<IonicCrystal>(),  builder_kind<Block>()};
   return all;
 }
 

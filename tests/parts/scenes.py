@@ -467,6 +467,10 @@ BUILDERS = {
     "polymer_chains": Case("[particles]\ntype = 'polymer_chains'\nchains = 2\nbeads = 4\ndensity = 0.1\nmass = 1\n"
                            "bending = 1\ntemperature = 0.5\n", forces("type = 'bonded'"), step=0.002),
     "water_box": water(),
+    "ionic_crystal": Case("[particles]\ntype = 'ionic_crystal'\ncells = [1, 1, 1]\nions = ['A', 'B']\nmasses = [1, 2]\n"
+                          "charge = 0.1\nconstant = 2.4\nepsilon = [1, 1]\nsigma = [1, 1]\ntemperature = 0.1\n",
+                          forces("type = 'lennard_jones'; cutoff = 2.5", "type = 'reaction_field'; cutoff = 2.5"),
+                          step=0.002),
     "block": Case(BLOCK, forces("type = 'hyperelastic'; lambda = 1; mu = 0.8")),
 }
 

@@ -1,6 +1,9 @@
 // Builders: densities, distances, temperatures and bonds of what they build.
 
 #include "scene/builders.hpp"
+#include "engine/force_sink.hpp"
+#include "forces/ewald.hpp"
+#include "scene/ionic_crystal.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/refusal.hpp"
 
@@ -61,6 +64,66 @@ TEST_CASE("lattices have the density and the neighbors of their kind", "[builder
   CHECK(s.topology()->pair_kind(0, 0) == PairKind{2, 3});
   CHECK(s.ids().front() == 1);
   CHECK(s.name(31) == "atom_32");
+}
+
+TEST_CASE("crystals of ions have the neighbors and the density of their kind, and Madelung's constants", "[builders]") {
+  // Neighbors of the other kind and their distance in edges; constants by that distance, as "Lattice Sums" of Borwein,
+  // Glasser, McPhedran, Wan and Zucker has them.
+  const std::map<IonicLattice, std::array<double, 4>> known = {
+      {IonicLattice::rock_salt, {8, 6, 0.5, 1.7475645946331822}},
+      {IonicLattice::cesium_chloride, {2, 8, std::sqrt(0.75), 1.7626747730709884}},
+      {IonicLattice::zinc_blende, {8, 4, std::sqrt(3.0) / 4, 1.6380550533887894}}};
+  for (const auto& [lattice, facts] : known) {
+    const IonicCrystal crystal{.lattice = lattice,
+                               .cells = {2, 3, 2},
+                               .ions = {"Na", "Cl"},
+                               .masses = {22.99, 35.45},
+                               .charge = 2,
+                               .constant = 0.5,
+                               .epsilon = {1, 2},
+                               .sigma = {0.2, 0.4}};
+    const auto s = crystal.build();
+    CAPTURE(facts[0]);
+    REQUIRE(s.size() == 12 * static_cast<Index>(facts[0]));
+    const double nearest = facts[2] * 0.5;
+    CHECK(std::abs(least_distance(s) - nearest) < 1e-14);
+    CHECK(neighbors_of_first(s, nearest) == static_cast<int>(facts[1]));
+    CHECK(s.name(2) == "Na_2");
+    CHECK(s.name(3) == "Cl_2");
+    CHECK(s.column<Charge>()[4] == 2);
+    CHECK(s.column<Charge>()[5] == -2);
+    CHECK(s.topology()->pair_kind(1, 1) == PairKind{2, 0.4});
+    VectorColumn<double> a(s.size());
+    ForceSink<double> sink(a, s, {.energy = true});
+    Ewald{.cutoff = 0.9, .relative_error = 1e-14}.add_to(sink, s);
+    const double by_pair = -s.units().coulomb_constant * 4 * facts[3] / nearest;
+    CHECK(std::abs(sink.potential() / (by_pair * static_cast<double>(s.size()) / 2) - 1) < 1e-10);
+    IonicCrystal by_density = crystal;
+    by_density.constant.reset();
+    by_density.density = mass_density(s);
+    CHECK(std::abs(by_density.build().box().edges()[1] - 1.5) < 1e-14);
+  }
+}
+
+TEST_CASE("crystals of ions that make no sense are refused", "[builders][messages]") {
+  const auto refusal = [](auto change) {
+    IonicCrystal salt{.cells = {1, 1, 1}, .ions = {"Na", "Cl"}, .masses = {23, 35}, .constant = 0.56};
+    change(salt);
+    return refusal_to_build(salt);
+  };
+  CHECK(refusal([](IonicCrystal&) {}).empty());
+  CHECK(refusal([](IonicCrystal& s) { s.masses = {23}; }) ==
+        "masses = [23] is not a list of two numbers; one for each type is expected");
+  CHECK(refusal([](IonicCrystal& s) {
+          s.masses = {23, -1};
+        }).find("two numbers above 0 are expected") != std::string::npos);
+  CHECK(refusal([](IonicCrystal& s) {
+          s.ions = {"Na", "Na"};
+        }).find("is not a list of two names") != std::string::npos);
+  CHECK(refusal([](IonicCrystal& s) { s.charge = 0; }).find("a number other than 0 is expected") != std::string::npos);
+  CHECK(refusal([](IonicCrystal& s) { s.epsilon = {1, 1}; }).find("is given without sigma") != std::string::npos);
+  CHECK(refusal([](IonicCrystal& s) { s.sigma = {1, 1}; }).find("is given without epsilon") != std::string::npos);
+  CHECK(refusal([](IonicCrystal& s) { s.density = 2; }).find("give only one of them") != std::string::npos);
 }
 
 TEST_CASE("velocities have the temperature asked for, and no momentum", "[builders]") {
