@@ -302,6 +302,11 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   if (field != forces.end() && !has_charges(scene.particles)) {
     add(fmt::format("no particle has a charge, so the field '{}' does nothing; give a body a charge", field->name));
   }
+  const auto of_charges = std::find_if(forces.begin(), forces.end(), [](const SceneForce& force) {
+    return force.force.claims().charges == true && !force.force.claims().gyrates;
+  });
+  if (of_charges != forces.end() && !has_charges(scene.particles))
+    add(fmt::format("no particle has a charge for the force '{}'; give a body a charge", of_charges->name));
   const SceneValue* particles = scene.effective.find("particles");
   if (none_does(scene, &ForceClaims::exclusions) && particles != nullptr && particles->find("exclusions") != nullptr) {
     add(fmt::format("exclusions have no effect: no force of this scene leaves pairs out; forces that do are {}",

@@ -305,6 +305,8 @@ TEST_CASE("charges that no force looks at are warned of", "[cli][messages]") {
       has(output(pair, run + "0.5 --json --out b"), R"("warnings":["the particles have charges that no force uses"])"));
   CHECK_FALSE(has(output(pair, run + "0 --out c"), "warning"));
   CHECK_FALSE(has(output(pair, run + "0.5 --out d" + field), "warning"));
+  CHECK(has(output(pair, run + "0 --out e" + field),
+            "\nwarning: no particle has a charge for the force 'reaction_field'; give a body a charge\n"));
 }
 
 TEST_CASE("exclusions that no force leaves out are warned of", "[cli][messages]") {
