@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/explain_bodies.hpp"
 #include "cli/explain_kept.hpp"
+#include "cli/explain_mesh.hpp"
 #include "cli/gyration_text.hpp"
 #include "cli/method_text.hpp"
 #include "cli/scene_reports.hpp"
@@ -463,12 +464,13 @@ void print_text(const Scene& scene, const Explanation& e, bool all) {
   for (const SceneForce& force : scene.hamiltonian.forces) {
     const SceneValue* precision = force.effective.find("precision");
     const std::string* chosen = precision != nullptr ? precision->get<std::string>() : nullptr;
-    if (chosen == nullptr || *chosen != "mixed") continue;
+    if (chosen == nullptr || *chosen != "mixed" || force.force.claims().charges.value_or(false)) continue;
     fmt::print(
         "precision: {}'s forces of pairs are single, right to about 1e-6 of the strongest attraction; their sums are "
         "exact, energies are doubles\n",
         force.name);
   }
+  if (const std::string mesh = mesh_text(scene); !mesh.empty()) fmt::print("{}\n", mesh);
   if (const std::string gyration = gyration_text(scene); !gyration.empty()) fmt::print("{}\n", gyration);
   if (!e.kept.empty()) fmt::print("{}\n", e.kept);
   if (!e.shadow.empty()) fmt::print("{}\n", e.shadow);
@@ -532,6 +534,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
                                                  {"bytes", static_cast<std::int64_t>(e.neighbors->bytes)}})
                                  : Json()},
        {"rigid_bodies", bodies_json(scene)},
+       {"mesh", mesh_json(scene)},
        {"stiffness", stiffness_json(e)},
        {"constraints", std::int64_t{e.constraints}},
        {"flows_per_step", Json::object(flows)},

@@ -12,7 +12,7 @@ namespace noether {
 
 namespace {
 
-constexpr double most_points = 1e9;
+constexpr double most_points = 1e9, bytes_of_point = 28;
 
 /// A mesh, and what it was chosen for.
 struct KeptMesh {
@@ -69,10 +69,10 @@ void ParticleMeshEwald::check(const ParticleSystem<double>& s) const {
   double points = 1;
   for (const std::int64_t size : layout.points) points *= static_cast<double>(size);
   if (points > most_points) {
-    throw Error(
-        fmt::format("the force '{}' would have a mesh of {:.2g} points, more than {:.0e}; take a longer cutoff or "
-                    "a larger relative_error",
-                    describe().name, points, most_points));
+    throw Error(fmt::format(
+        "the force '{}' would have a mesh of {:.2g} points, more than {:.0e}, in {:.2g} GB of memory; take a longer "
+        "cutoff or a larger relative_error",
+        describe().name, points, most_points, bytes_of_point * points / 1e9));
   }
   if (precision == PairPrecision::full) return;
   const double single = single_error_of(layout, neighbor_of(s, charged));
@@ -119,7 +119,10 @@ std::optional<ChosenMesh> ParticleMeshEwald::chosen_for(const ParticleSystem<dou
   const Index charged = detail::charge_sums(s).charged;
   if (charged == 0) return {};
   const detail::MeshLayout layout = layout_for(s, charged);
-  return ChosenMesh{layout.alpha, layout.order, layout.points, error_of(layout, neighbor_of(s, charged))};
+  const double neighbor = neighbor_of(s, charged);
+  const bool mixed = precision == PairPrecision::mixed;
+  return ChosenMesh{layout.alpha, layout.order, layout.points, error_of(layout, neighbor),
+                    mixed ? single_error_of(layout, neighbor) : 0};
 }
 
 void ParticleMeshEwald::add_to(ForceSink<double>& out, const ParticleSystem<double>& s) const {

@@ -21,7 +21,8 @@ struct ChosenMesh {
   double alpha = 0;  ///< [1/length]
   int order = 0;
   std::array<std::int64_t, 3> points{};
-  double error = 0;  ///< of forces by waves, as relative_error
+  double error = 0;     ///< of forces by waves, as relative_error
+  double rounding = 0;  ///< of forces in single precision, at most; 0 in doubles
 };
 
 /// Ewald's sum with its waves on a mesh: charges are spread by B-splines, transformed, and the potential is gathered by

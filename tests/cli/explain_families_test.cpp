@@ -35,6 +35,34 @@ step = 0.05
 steps = 400
 )";
 
+/// Two charges in a box.
+const std::string charges_scene = R"(units = "reduced"
+[particles]
+box = [3, 3, 3]
+[[particles.body]]
+name = "one"
+mass = 1
+charge = 1
+x = [1.2, 1.5, 0.7]
+v = [0, 0, 0]
+[[particles.body]]
+name = "other"
+mass = 1
+charge = -1
+x = [0.2, 0.1, 1]
+v = [0, 0, 0]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "particle_mesh_ewald"
+cutoff = 1.4
+relative_error = 1e-3
+[integrator]
+method = "verlet"
+step = 0.001
+steps = 10
+)";
+
 /// Two bodies of three and four sites, a point, and a body of known moments that turns 0.05 times in a step.
 const std::string bodies_scene = R"(units = "reduced"
 [[particles.body]]
@@ -133,6 +161,25 @@ TEST_CASE("explain tells what a step over an action takes, and who can watch it"
       {"\nmonitor 'shadow_hamiltonian' cannot watch: a force of this run is dissipative, so its motion has no "
        "action\n"});
   CHECK_FALSE(has(output(folder, "explain scene.toml --set system.type=lorenz --set integrator.method=rk4"), "shadow"));
+}
+
+TEST_CASE("explain tells the mesh of charges, its errors, and that without charges it costs nothing",
+          "[cli][explain]") {
+  const SceneFolder folder(charges_scene);
+  const std::string json = output(folder, "explain scene.toml --json");
+  const std::string mesh = json_member(json, "mesh");
+  CHECK(mesh.starts_with(R"({"force":"particle_mesh_ewald","points":[)"));
+  CHECK(json_member(mesh, "rounding") == "0");
+  const std::string order = json_member(mesh, "order");
+  const std::string splines = " points and splines of order " + order + ", 1/r split at alpha = ";
+  check_explained(output(folder, "explain scene.toml"),
+                  {"\nmesh: ", splines.c_str(), "; root mean square error of forces ",
+                   " from the mesh, in the unit of relative_error\n"});
+  check_explained(output(folder, "explain scene.toml --set hamiltonian.force.0.precision=mixed"),
+                  {" from the mesh and up to ", " from single precision, in the unit of relative_error\n"});
+  check_explained(
+      output(folder, "explain scene.toml --set particles.body.one.charge=0 --set particles.body.other.charge=0"),
+      {"\nmesh: no particle has a charge, and particle_mesh_ewald costs nothing\n"});
 }
 
 }  // namespace noether::test

@@ -7,8 +7,11 @@
 #include "tests/support/pair_forces.hpp"
 #include "tests/support/refusal.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <vector>
 
 namespace noether {
 namespace {
@@ -146,6 +149,73 @@ TEST_CASE("charges on points and faces of the mesh, two of them, one, and none",
   CHECK(by_mesh(force, s).energy == 0);
 }
 
+TEST_CASE("boxes of one to a thousand cutoffs: Ewald's sum, or one line that names the memory", "[mesh]") {
+  for (const double edge : {1.0, 2.5, 10.0}) {
+    CAPTURE(edge);
+    ParticleSystem<double> s(unit_system("reduced"));
+    s.set_box(Box::periodic({edge, edge, edge}));
+    s.add("", 1, {0.2, 0.1, 0.3}, {0, 0, 0});
+    s.add("", 1, {0.5, 0.9, 0.7}, {0, 0, 0});
+    s.add_column<Charge>()[0] = 1;
+    s.column<Charge>()[1] = -1;
+    const test::Evaluated mesh = by_mesh({.cutoff = 1, .relative_error = 1e-4}, s);
+    const test::Evaluated waves = by_waves({.cutoff = 1, .relative_error = 1e-10}, s);
+    // The error that is asked is that of charges in no order; two near each other have the larger one of their force.
+    CHECK(test::largest_difference(mesh.a, waves.a) < 3e-4 * std::max(waves.a[0].norm(), std::pow(edge, -2)));
+    CHECK(std::abs(mesh.energy - waves.energy) < 1e-3 * std::abs(waves.energy));
+  }
+  ParticleSystem<double> s(unit_system("reduced"));
+  s.set_box(Box::periodic({1000, 1000, 1000}));
+  s.add("", 1, {0, 0, 0}, {0, 0, 0});
+  s.add_column<Charge>()[0] = 1;
+  const std::string refusal = test::refusal_of([&] { AnyForce<double>(ParticleMeshEwald{.cutoff = 1}).check(s); });
+  CHECK(refusal.starts_with("the force 'particle_mesh_ewald' would have a mesh of "));
+  CHECK(refusal.ends_with(" GB of memory; take a longer cutoff or a larger relative_error"));
+}
+
+TEST_CASE("charges of 1e-6 to 1e3 side by side have the error that is asked, of the force between typical ones",
+          "[mesh]") {
+  ParticleSystem<double> s = test::charged_liquid(3);
+  auto& q = s.column<Charge>();
+  double squares = 0;
+  for (Index i = 0; i < s.size(); ++i) q[i] *= std::pow(10.0, static_cast<double>(i * 7 % 19) / 2 - 6);
+  for (Index i = 0; i < s.size(); ++i) squares += q[i] * q[i];
+  const double n = static_cast<double>(s.size()), typical = squares / n * std::pow(0.8, 2.0 / 3);
+  const test::Evaluated exact = by_waves({.cutoff = 2.2, .relative_error = 1e-12}, s);
+  for (const PairPrecision precision : {PairPrecision::full, PairPrecision::mixed}) {
+    const test::Evaluated mesh = by_mesh({.cutoff = 2.2, .relative_error = 1e-4, .precision = precision}, s);
+    const double reached = rms(mesh.a, exact.a) / typical;
+    CAPTURE(reached);
+    CHECK(reached < 2e-4);
+    CHECK(reached > 5e-6);
+  }
+}
+
+TEST_CASE("of the orders that have the error, the mesh takes one that costs less than others", "[mesh]") {
+  const ParticleSystem<double> s = test::charged_liquid(4);
+  std::vector<int> orders;
+  for (const double error : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}) {
+    CAPTURE(error);
+    const ChosenMesh chosen = *ParticleMeshEwald{.cutoff = 2.4, .relative_error = error}.chosen_for(s);
+    const auto work = [&](const ChosenMesh& mesh) {
+      const double points = static_cast<double>(mesh.points[0] * mesh.points[1] * mesh.points[2]);
+      return detail::mesh_work(static_cast<double>(s.size()), points, mesh.order);
+    };
+    CHECK(chosen.error <= 1.02 * error / std::sqrt(2.0));  // the spacing is interpolated
+    for (const std::int64_t order : {4, 5, 6, 7, 8}) {
+      const ChosenMesh other = *ParticleMeshEwald{.cutoff = 2.4, .relative_error = error, .order = order}.chosen_for(s);
+      CHECK(other.order == order);
+      CHECK(work(chosen) <= work(other));
+    }
+    orders.push_back(chosen.order);
+  }
+  CHECK(std::is_sorted(orders.begin(), orders.end()));
+  CHECK(orders.front() < orders.back());
+  // A spacing that is given takes the lowest order that is good enough, and the highest where none is.
+  CHECK(ParticleMeshEwald{.cutoff = 2.4, .relative_error = 1e-2, .mesh_spacing = 0.4}.chosen_for(s)->order == 4);
+  CHECK(ParticleMeshEwald{.cutoff = 2.4, .relative_error = 1e-9, .mesh_spacing = 0.4}.chosen_for(s)->order == 8);
+}
+
 TEST_CASE("a mesh that makes no sense is refused by name, and its truth is Ewald's sum", "[mesh][messages]") {
   const ParticleSystem<double> s = test::charged_liquid(2);
   const auto refusal = [&](const ParticleMeshEwald& force) {
@@ -159,6 +229,9 @@ TEST_CASE("a mesh that makes no sense is refused by name, and its truth is Ewald
   CHECK(
       refusal({.cutoff = 1.5, .mesh_spacing = 1e-4}).starts_with("the force 'particle_mesh_ewald' would have a mesh"));
   CHECK(refusal({.cutoff = -1}) == "cutoff = -1 is not a valid cutoff; a length above 0 is expected");
+  CHECK(refusal({.cutoff = 1.5, .relative_error = 1e-4, .precision = PairPrecision::mixed}).empty());
+  CHECK(refusal({.cutoff = 1.5, .relative_error = 1e-9, .precision = PairPrecision::mixed})
+            .starts_with("relative_error = 1e-09 is finer than forces in mixed precision are; "));
   const auto wide = AnyForce<double>(ParticleMeshEwald{.cutoff = 1.5}).in_quad();
   REQUIRE(wide);
   CHECK(wide->name() == "ewald");
