@@ -256,7 +256,7 @@ template <class T> void ChargeMesh<T>::Memory::count_charges(const ChargeTiles& 
   view.counts_in_one = 1 / unit;
   view.half_count = static_cast<T>(unit / std::ldexp(2.0, std::ilogb(strongest)));
   const auto spread = kernels_of(T()).spread[layout.order - least_order];
-  const auto [nx, ny] = tiles.tiles();
+  const Index nx = tiles.tiles()[0], ny = tiles.tiles()[1];
   const auto spread_tile = [&](Index tile) {
     spread(view, tiles.places() + tiles.begin(tile), tiles.begin(tile + 1) - tiles.begin(tile));
   };

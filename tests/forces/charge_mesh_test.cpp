@@ -45,7 +45,7 @@ struct Waves {
 
 /// What smooth particle mesh Ewald says of waves (Essmann and others 1995), as it stands there: C = 1.
 Waves by_definition(const ParticleSystem<double>& s, const detail::MeshLayout& layout) {
-  const auto& [nx, ny, nz] = layout.points;
+  const std::int64_t nx = layout.points[0], ny = layout.points[1], nz = layout.points[2];
   const Vec3<double>& edges = layout.edges;
   std::vector<Complex> mesh(static_cast<std::size_t>(nx * ny * nz));
   const auto visit = [&](Index i, const auto& body) {
