@@ -77,7 +77,8 @@ void add_waves(const ParticleSystem<Quad>& s, const std::vector<Index>& on, cons
   for (const detail::Wave& wave : waves) {
     for (std::size_t k = 0; k < 3; ++k) most[k] = std::max(most[k], std::abs(wave[k]));
   }
-  const detail::WaveTables<Quad> tables = detail::wave_tables(s, most);
+  detail::WaveTables<Quad> tables;
+  detail::fill_wave_tables(tables, s, most);
   const auto& q = s.column<Charge>();
   std::vector<std::vector<Turn>> sums(rows.size());
   for_each_shared(rows.size(), [&](std::size_t r) {
