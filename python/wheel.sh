@@ -89,7 +89,7 @@ command_wheel() {
     wheel_venv "$python" "$tools"
     [ -n "${NOETHER_HDF5_ROOT:-}" ] || wheel_hdf5
     wheel_licences "${NOETHER_HDF5_ROOT:-$folder/hdf5/prefix}" "$tools"
-    rm -rf "$raw"
+    rm -rf "$raw" "$folder/repaired-$tag"
     (cd "$here" && PATH="$tools/bin:$PATH" NINJA_STATUS="[%f/%t] " "$tools/bin/python" - "$raw" "$folder/cmake" \
       "HDF5_ROOT=${NOETHER_HDF5_ROOT:-$folder/hdf5/prefix}" "NOETHER_LICENCES=$folder/licences" <<'END'
 import sys
@@ -111,12 +111,12 @@ END
       fail "auditwheel could not make the wheel one for other systems; the whole output is in $log" 4
     }
     wheel=$(find "$folder/repaired-$tag" -name '*.whl' -printf '%f\n')
-    mv "$folder/repaired-$tag/$wheel" "$folder/"
-    rm -rf "$raw" "$folder/repaired-$tag"
-    bytes=$(stat -c %s "$folder/$wheel")
-    grafted=$("$tools/bin/python" -m zipfile -l "$folder/$wheel" | grep -cE '^noether\.libs/.*\.so' || true)
+    bytes=$(stat -c %s "$folder/repaired-$tag/$wheel")
+    grafted=$("$tools/bin/python" -m zipfile -l "$folder/repaired-$tag/$wheel" | grep -cE '^noether\.libs/.*\.so' || true)
     [ "$grafted" -le $wheel_grafted ] && [ "$bytes" -le $((wheel_megabytes * 1000000)) ] ||
       fail "$wheel has $bytes bytes and $grafted libraries of the system; $wheel_megabytes MB and $wheel_grafted are the most" 4
+    mv "$folder/repaired-$tag/$wheel" "$folder/"
+    rm -rf "$raw" "$folder/repaired-$tag"
     say "wrote build/wheel/$wheel ($((bytes / 100000 / 10)).$((bytes / 100000 % 10)) MB, with $grafted libraries of the system)"
     echo "$folder/$wheel"
   ) 9>"$here/build/wheel.lock"
