@@ -7,6 +7,7 @@
 #include "integrators/first_order_system.hpp"
 #include "integrators/hamiltonian_system.hpp"
 #include "integrators/variational/lagrangian_system.hpp"
+#include "study/kick_shares.hpp"
 #include "study/multistep_roots.hpp"
 
 #include <Eigen/LU>
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <span>
 #include <utility>
@@ -68,12 +70,14 @@ struct CanonicalMode {
 };
 
 /// The step of a scheme for omega = 1, drag included; columns are what (1, 0) and (0, 1) become.
-Matrix2 walk_word(const std::vector<Stage>& word, double z, double drag) {
+/// @param shares  what the kicks of each letter have of omega^2
+Matrix2 walk_word(const std::vector<Stage>& word, double z, double drag, const std::map<char, double>& shares) {
   Matrix2 step = Matrix2::Identity();
   for (const Stage& stage : word) {
     const double w = static_cast<double>(stage.weight) * z;
     if (stage.letter == 'A') step.row(0) += w * step.row(1);
-    if (stage.letter == 'B') step.row(1) -= w * step.row(0);
+    if (const auto share = shares.find(stage.letter); share != shares.end())
+      step.row(1) -= share->second * w * step.row(0);
     if (stage.letter == 'D') step.row(1) *= std::exp(-drag * w);
   }
   return step;
@@ -328,12 +332,20 @@ std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, 
     claims.dissipative = true;
   }
   const Scheme scheme = scheme_of(made.integrator);
-  // Of multiple time steps theory knows one force at a time: a composition has all kicks at the same places.
   const bool several = std::any_of(made.hamiltonian.forces.begin(), made.hamiltonian.forces.end(),
                                    [](const SceneForce& force) { return force.force.claims().kicks != "B"; });
-  if (several && !scheme.is_composition()) return {};
-  const std::vector<Stage> word = fitted_word(scheme, claims, "mode").stages;
-  return [word, drag = mode.rate / mode.omega](double z) { return walk_word(word, z, drag); };
+  std::map<char, double> shares = {{'B', 1}};
+  if (several && (!scheme.is_composition() || scheme.nested)) {  // else all kicks stand at the same places
+    shares = kick_shares(made);
+    if (shares.empty()) return {};
+    claims.kicks.clear();
+    for (const auto& [letter, share] : shares) claims.kicks += letter;
+    claims.alphabet = "A" + claims.kicks + claims.irreversible;
+    claims.basic = std::string(claims.kicks.rbegin(), claims.kicks.rend()) + "A" + claims.kicks;
+  }
+  const CompositionOptions inner{.inner_steps = made.integrator.composition.inner_steps};
+  const std::vector<Stage> word = fitted_word(scheme, claims, "mode", inner).stages;
+  return [word, shares, drag = mode.rate / mode.omega](double z) { return walk_word(word, z, drag, shares); };
 }
 
 bool first_step_fails(const Scene& scene, const Candidate& who, const Mode& mode, double z) {

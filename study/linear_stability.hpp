@@ -14,10 +14,12 @@ namespace noether {
 
 /// One step of a method on a mode, as a real matrix of shape (2, 2), by z = h omega (or h |lambda|).
 ///
-/// Of a scheme, the product of its letters' matrices; of a classical method, its own step from two unit vectors. A
+/// Of a scheme, the product of its letters' matrices, in multiple time steps by what each kick has of the mode
+/// (`kick_shares`); of a classical method, its own step from two unit vectors. A
 /// multistep method remembers more than a state: it has no such matrix.
 using StepMatrix = std::function<Eigen::Matrix2d(double z)>;
-/// @return empty for a multistep method, for a splitting into Kepler arcs, which is exact on no such mode, and for a
+/// @return empty for a multistep method, for kicks of several letters of which the mode is not one of each, for a
+/// splitting into Kepler arcs, which is exact on no such mode, and for a
 ///         method over a Lagrangian at a real rate that is none of damping
 std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, const Mode& mode);
 
