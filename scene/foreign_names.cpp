@@ -31,7 +31,7 @@ constexpr std::array names_of_others = {
                 "it splits kinetic and potential energy, without a Kepler solver", true},
     ForeignName{" janus ", NamePlace::method, "kahan_li_8_s17",
                 "symmetric and of order 8; its arithmetic is not in whole numbers", true},
-    ForeignName{" rrespa multiple_timestep multiple_time_step multiple_time_steps verlet_i impulse ", NamePlace::method,
+    ForeignName{" multiple_timestep multiple_time_step multiple_time_steps verlet_i impulse ", NamePlace::method,
                 "respa", "with inner_steps = [4], and kick = \"C\" in the table of the slow force"},
     // Along Kepler arcs.
     ForeignName{" whfast whfast512 wh wisdomholman wisdom_holman mvs rmvs swift helio ", NamePlace::hamiltonian,
