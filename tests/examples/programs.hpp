@@ -30,10 +30,12 @@
 #include "forces/gravity_of_bodies.hpp"
 #include "forces/henon_heiles.hpp"
 #include "forces/hyperelastic.hpp"
+#include "forces/lattice_accuracy.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/linear_drag.hpp"
 #include "forces/on_sites.hpp"
 #include "forces/pair_potentials.hpp"
+#include "forces/particle_mesh_ewald.hpp"
 #include "forces/sum.hpp"
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
@@ -78,6 +80,7 @@
 #include "scene/block.hpp"
 #include "scene/builders.hpp"
 #include "scene/constrained.hpp"
+#include "scene/ionic_crystal.hpp"
 #include "scene/run.hpp"
 #include "scene/water_box.hpp"
 
@@ -180,6 +183,9 @@ namespace examples::figure_eight {
 namespace examples::henon_heiles {
 #include "examples/henon_heiles/main.cpp"
 }
+namespace examples::ion_pair {
+#include "examples/ion_pair/main.cpp"
+}
 namespace examples::kepler {
 #include "examples/kepler/main.cpp"
 }
@@ -216,11 +222,17 @@ namespace examples::schwarzschild {
 namespace examples::sleeping_top {
 #include "examples/sleeping_top/main.cpp"
 }
+namespace examples::sodium_chloride {
+#include "examples/sodium_chloride/main.cpp"
+}
 namespace examples::solar_system {
 #include "examples/solar_system/main.cpp"
 }
 namespace examples::spherical_pendulum {
 #include "examples/spherical_pendulum/main.cpp"
+}
+namespace examples::spce_water {
+#include "examples/spce_water/main.cpp"
 }
 namespace examples::spin_orbit {
 #include "examples/spin_orbit/main.cpp"
