@@ -144,6 +144,19 @@ class PlanetLanesOfSystems final : public SystemLanes {
       for (std::size_t k = 0; k < lanes; ++k) add(now_->centers.v[c][k], now_->centers.v_low[c][k], center_[c][k]);
     }
   }
+  void scale_velocities(double factor) override {
+    const auto scale = [&](double(&lines)[3][8]) {
+      for (auto& line : lines) {
+        for (double& v : line) v *= factor;
+      }
+    };
+    for (SystemRow& row : now_->rows) {
+      scale(row.v);
+      scale(row.v_low);
+    }
+    scale(now_->centers.v);
+    scale(now_->centers.v_low);
+  }
   const std::optional<Failure>& failure() const override { return failure_; }
 
  private:

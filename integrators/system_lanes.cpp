@@ -2,9 +2,11 @@
 
 #include "engine/lane_by_lane.hpp"
 #include "integrators/composition.hpp"
+#include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "numbers/pack.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace noether {
@@ -80,6 +82,7 @@ class KickedLanes final : public SystemLanes {
     sum(letter, s);
     s.advance_velocities(Pack(h), a_);
   }
+  void scale_velocities(double factor) override { (showing_ ? shown_ : run_).scale_velocities(Pack(factor)); }
   const std::optional<Failure>& failure() const override { return failure_; }
 
  private:
@@ -154,7 +157,40 @@ class LaneLetters {
   SystemLanes* systems_;
 };
 
+/// Systems with one letter more.
+class DampedLanes final : public SystemLanes {
+ public:
+  DampedLanes(std::unique_ptr<SystemLanes> systems, double rate)
+      : systems_(std::move(systems)),
+        rate_(rate),
+        claims_(Damped(LaneLetters(systems_.get()), LinearDrag{.rate = rate}).claims()) {}
+
+  std::string name() const override { return "damped"; }
+  HamiltonianClaims claims() const override { return claims_; }
+  void put(std::size_t lane, const ParticleSystem<double>& s) override { systems_->put(lane, s); }
+  void take(std::size_t lane, ParticleSystem<double>& s) const override { systems_->take(lane, s); }
+  void copy_lane(std::size_t from, std::size_t to) override { systems_->copy_lane(from, to); }
+  void show() override { systems_->show(); }
+  void go_on() override { systems_->go_on(); }
+  void keep() override { systems_->keep(); }
+  void go_back() override { systems_->go_back(); }
+  void flow(char letter, double h, double time) override {
+    letter == 'D' ? scale_velocities(std::exp(-rate_ * h)) : systems_->flow(letter, h, time);
+  }
+  void scale_velocities(double factor) override { systems_->scale_velocities(factor); }
+  const std::optional<Failure>& failure() const override { return systems_->failure(); }
+
+ private:
+  std::unique_ptr<SystemLanes> systems_;
+  double rate_;
+  HamiltonianClaims claims_;
+};
+
 }  // namespace
+
+std::unique_ptr<SystemLanes> with_drag(std::unique_ptr<SystemLanes> systems, double rate) {
+  return std::make_unique<DampedLanes>(std::move(systems), rate);
+}
 
 std::unique_ptr<SystemLanes> systems_under_forces(const ForceField<double>& forces, const ParticleSystem<double>& like,
                                                   bool compensated) {

@@ -42,6 +42,8 @@ class SystemLanes {
   virtual void go_back() = 0;
 
   virtual void flow(char letter, double h, double time) = 0;
+  /// v *= factor for every particle, as drag does.
+  virtual void scale_velocities(double factor) = 0;
   /// Why a flow of the run could not be done since `go_back()`, in one lane at least; the first time tells.
   virtual const std::optional<Failure>& failure() const = 0;
 };
@@ -52,6 +54,10 @@ class SystemLanes {
 /// @throws Error  for forces that have no lanes, or cannot act on these particles
 std::unique_ptr<SystemLanes> systems_under_forces(const ForceField<double>& forces, const ParticleSystem<double>& like,
                                                   bool compensated);
+
+/// The same systems with linear drag as the letter D (`Damped`).
+/// @param rate  v' = - rate v [1/time]
+std::unique_ptr<SystemLanes> with_drag(std::unique_ptr<SystemLanes> systems, double rate);
 
 /// Eight runs at once, step by step: a splitting method over systems in lanes.
 class LaneRun {

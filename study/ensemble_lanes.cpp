@@ -29,12 +29,7 @@ namespace {
 constexpr std::int64_t longest_cut = 1024;
 /// Above, the lanes are better filled with particles.
 constexpr Index most_particles = 64;
-constexpr std::size_t lanes = SystemLanes::lanes;
-
-const GrPotential* only_relativity(const Scene& scene) {
-  const std::vector<SceneForce>& forces = scene.hamiltonian.forces;
-  return forces.size() == 1 ? forces[0].force.as<GrPotential>() : nullptr;
-}
+constexpr std::size_t member_lanes = SystemLanes::lanes;
 
 /// Arcs about a primary and kicks, split in coordinates and by nothing else.
 bool is_planetary(const Scene& scene) {
@@ -57,6 +52,7 @@ std::string why_alone_by_hamiltonian(const Scene& scene) {
     return fmt::format("the Hamiltonian '{}' has no lanes", made.splitting.name);
   }
   for (const SceneForce& force : made.forces) {
+    if (force.letter && force.force.claims().drag > 0) continue;
     if (force.letter) return fmt::format("'{}' is a letter of its own, which has no lanes", force.name);
     if (!force.force.has_lanes()) return fmt::format("the force '{}' is written for doubles only", force.name);
     if (force.force.claims().velocity_dependent) return fmt::format("the force '{}' depends on velocities", force.name);
@@ -66,7 +62,8 @@ std::string why_alone_by_hamiltonian(const Scene& scene) {
   if (!is_planetary(scene)) return "";
   const std::string* which = made.splitting.effective.find("coordinates")->get<std::string>();
   if (which != nullptr && *which != "jacobi") return fmt::format("coordinates = \"{}\" have no lanes", *which);
-  if (scene.integrator.composition.kernel != StepKernel::plain) return "kernels of modified kicks have no lanes";
+  const StepKernel kernel = scene.integrator.composition.kernel;
+  if (kernel == StepKernel::modified || kernel == StepKernel::lazy) return "kernels of modified kicks have no lanes";
   if (scene.particles.size() < 2) return "there are no planets";
   for (Index i = 0; i < scene.particles.size(); ++i) {
     if (scene.particles.masses()[i] == 0) return "tracers of wisdom_holman go in lanes by themselves";
@@ -96,7 +93,7 @@ std::string make_of(const Scene& scene, const std::vector<std::int64_t>& order) 
                      fmt::join(order, ","), tracers);
 }
 
-std::vector<std::int64_t> order_of(const Scene& scene) {
+std::vector<std::int64_t> jacobi_order_of(const Scene& scene) {
   if (!is_planetary(scene)) return {};
   WisdomHolman<double> probe(WisdomHolmanOptions{.G = scene.hamiltonian.G});
   ParticleSystem<double> s = scene.particles;
@@ -107,8 +104,20 @@ std::vector<std::int64_t> order_of(const Scene& scene) {
 std::unique_ptr<SystemLanes> systems_of(const Scene& scene, const std::vector<std::int64_t>& order) {
   const bool compensated = scene.integrator.composition.compensated;
   ForceField<double> forces;
-  for (const SceneForce& force : scene.hamiltonian.forces) forces.add(force.force);
-  if (!is_planetary(scene)) return systems_under_forces(forces, scene.particles, compensated);
+  double drag = 0;
+  const GrPotential* relativity = nullptr;
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (force.letter) {
+      drag += force.force.claims().drag;
+      continue;
+    }
+    forces.add(force.force);
+    relativity = force.force.as<GrPotential>();
+  }
+  const auto finished = [&](std::unique_ptr<SystemLanes> systems) {
+    return drag > 0 ? with_drag(std::move(systems), drag) : std::move(systems);
+  };
+  if (!is_planetary(scene)) return finished(systems_under_forces(forces, scene.particles, compensated));
   const double units_G = scene.units->G;
   PlanetSystemsOptions options{.G = scene.hamiltonian.G.value_or(units_G),
                                .order = order,
@@ -116,13 +125,13 @@ std::unique_ptr<SystemLanes> systems_of(const Scene& scene, const std::vector<st
                                .G_of_light = units_G,
                                .others = {},
                                .compensated = compensated};
-  if (const GrPotential* relativity = only_relativity(scene)) {
+  if (relativity != nullptr && forces.terms().size() == 1) {
     options.light = speed_of_light_in(scene.particles, relativity->c, "gr_potential");
     options.G_of_light = relativity->G.value_or(units_G);
   } else {
     options.others = std::move(forces);
   }
-  return planet_systems(std::move(options), scene.particles);
+  return finished(planet_systems(std::move(options), scene.particles));
 }
 
 /// A member in a lane: its state as users see it, and who looks at it.
@@ -278,7 +287,7 @@ class Batch {
         run_(systems_of(first_, order), scheme_of(first_.integrator), first_.integrator.composition,
              clock_of(first_.integrator)),
         end_(*first_.integrator.steps) {
-    for (std::size_t k = 0; k < lanes; ++k) {
+    for (std::size_t k = 0; k < member_lanes; ++k) {
       run_.systems().put(k, members_[std::min(k, members_.size() - 1)]->scene().particles);
     }
   }
@@ -353,7 +362,7 @@ class Batch {
   /// before. The run is where it was.
   bool fails(std::size_t member, std::int64_t cut) {
     LaneMember& one = *members_[member];
-    for (std::size_t k = 0; k < lanes; ++k) {
+    for (std::size_t k = 0; k < member_lanes; ++k) {
       if (k != member) run_.systems().copy_lane(member, k);
     }
     std::optional<Failure> why;
@@ -381,7 +390,7 @@ class Batch {
     std::size_t from = 0;
     while (from < members_.size() && members_[from]->ended()) ++from;
     if (from == members_.size()) return;
-    for (std::size_t k = 0; k < lanes; ++k) {
+    for (std::size_t k = 0; k < member_lanes; ++k) {
       if (k >= members_.size() || members_[k]->ended()) run_.systems().copy_lane(from, k);
     }
   }
@@ -446,7 +455,7 @@ std::vector<EnsembleMember> run_members(const EnsembleScene& ensemble, std::span
       if (in_lanes) {
         const SceneRun start = ensemble.member(one.member);
         if (why_alone(start.scene()).empty()) {
-          std::vector<std::int64_t> order = order_of(start.scene());
+          std::vector<std::int64_t> order = jacobi_order_of(start.scene());
           Made& made = makes[make_of(start.scene(), order)];
           made.members.push_back(std::make_unique<LaneMember>(one.member, start.scene()));
           made.results.push_back(&one);
