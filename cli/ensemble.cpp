@@ -7,6 +7,7 @@
 #include "numbers/simd.hpp"
 #include "numbers/text.hpp"
 #include "scene/json.hpp"
+#include "scene/warnings.hpp"
 #include "study/ensemble.hpp"
 
 #include <fmt/format.h>
@@ -104,6 +105,7 @@ int make_ensemble(const EnsembleArguments& given, const Parts& parts) {
   options.progress = line.teller();
   const EnsembleReport report = run_ensemble(given.scene, plan, options, parts);
   line.clear();
+  tell_notes(report.notes);
   fmt::print("{}", given.json ? to_json(report) + "\n" : to_text(report));
   if (!report.interrupted) return 0;
   std::fflush(stdout);

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 
 #include "io/compare_runs.hpp"
+#include "io/ensemble_file.hpp"
 #include "io/inspect.hpp"
 #include "io/near_file.hpp"
 #include "io/repair.hpp"
@@ -63,6 +64,31 @@ void print_text(const std::string& file, const io::FileInfo& info) {
   }
   fmt::print("  written by noether {} ({}), simd {}\n", info.version, info.commit, info.simd);
   if (!info.digest.empty()) fmt::print("  {}\n", info.digest);
+}
+
+Json json_of(const io::EnsembleTable& table) {
+  const auto outcomes = io::outcomes_of(table.definition, table.rows);
+  return Json::object({{"schema", "noether.info/1"},
+                       {"kind", "ensemble"},
+                       {"members", table.definition.members},
+                       {"rows", static_cast<std::int64_t>(table.rows.size())},
+                       {"shard", table.shard.shard},
+                       {"shards", table.shard.shards},
+                       {"vary", Json::list_of(table.definition.variations)},
+                       {"outcomes", Json::object({outcomes.begin(), outcomes.end()})},
+                       {"digest", table.digest()},
+                       {"simd", table.definition.simd}});
+}
+
+void print_text(const std::string& file, const io::EnsembleTable& table) {
+  fmt::print("{}: {} of an ensemble of {}\n", file,
+             table.shard.whole() ? "all rows" : fmt::format("shard {} of {}", table.shard.shard, table.shard.shards),
+             counted(table.definition.members, "member"));
+  for (const std::string& one : table.definition.variations) fmt::print("  {}\n", one);
+  for (const auto& [outcome, count] : io::outcomes_of(table.definition, table.rows)) {
+    fmt::print("  {} {}\n", count, outcome);
+  }
+  fmt::print("  simd {}\n  {}\n", table.definition.simd, table.digest());
 }
 
 /// Mends a file in a folder that nobody else writes to.
@@ -203,16 +229,21 @@ CLI::App* file_command(CLI::App& app, const std::string& name, const std::string
 
 void add_info_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
-  CLI::App* command = file_command(app, "info", "what is in a file, and its digest", "run.h5 or a checkpoint", given);
+  CLI::App* command = file_command(app, "info", "what is in a file, and its digest",
+                                   "run.h5, a checkpoint or the table of an ensemble", given);
   command->add_flag("--json", given->json, "as one line of JSON");
   command->callback([given, &exit_code] {
+    exit_code = 0;
+    if (io::holds_ensemble(given->file)) {
+      const io::EnsembleTable table = io::read_ensemble(given->file);
+      return given->json ? fmt::print("{}\n", json_of(table).text()) : print_text(given->file, table);
+    }
     const io::FileInfo info = io::info(given->file);
     if (given->json) {
       fmt::print("{}\n", json_of(info).text());
     } else {
       print_text(given->file, info);
     }
-    exit_code = 0;
   });
 }
 

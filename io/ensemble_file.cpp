@@ -20,17 +20,17 @@ namespace noether::io {
 namespace {
 
 const std::string ensemble_group = "/ensemble";
-constexpr const char* schema = "noether.ensemble/1";
+constexpr const char* ensemble_schema = "noether.ensemble/1";
 
 std::string below(const std::string& name) { return ensemble_group + "/" + name; }
 
 /// The whole numbers of rows, by the names of their datasets.
-constexpr std::pair<const char*, std::int64_t EnsembleRow::*> integers[] = {{"member", &EnsembleRow::member},
-                                                                            {"outcome", &EnsembleRow::outcome},
-                                                                            {"step", &EnsembleRow::step},
-                                                                            {"particle", &EnsembleRow::particle}};
+constexpr std::pair<const char*, std::int64_t EnsembleRow::*> row_integers[] = {{"member", &EnsembleRow::member},
+                                                                                {"outcome", &EnsembleRow::outcome},
+                                                                                {"step", &EnsembleRow::step},
+                                                                                {"particle", &EnsembleRow::particle}};
 
-std::size_t size_of(Index n) { return static_cast<std::size_t>(n); }
+std::size_t as_size(Index n) { return static_cast<std::size_t>(n); }
 
 /// One number, or several, of every row as one list.
 std::vector<double> numbers_of(const std::vector<EnsembleRow>& rows, std::size_t first, std::size_t count) {
@@ -55,7 +55,7 @@ void write_definition(const Hdf5File& file, const EnsembleDefinition& d, const E
   file.set_attribute("/noether", "commit", commit());
   file.set_attribute("/noether", "simd", d.simd);
   file.make_group(ensemble_group);
-  file.set_attribute(ensemble_group, "schema", schema);
+  file.set_attribute(ensemble_group, "schema", ensemble_schema);
   file.set_attribute(ensemble_group, "grid", std::vector<std::int64_t>(d.grid.begin(), d.grid.end()));
   file.set_attribute(ensemble_group, "members", d.members);
   file.set_attribute(ensemble_group, "seed", d.seed);
@@ -67,7 +67,7 @@ void write_definition(const Hdf5File& file, const EnsembleDefinition& d, const E
 }
 
 /// @throws FileError
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
+[[noreturn]] void refuse_table(const std::filesystem::path& file, const std::string& why) {
   throw FileError(why, {.file = file.string()});
 }
 
@@ -105,7 +105,7 @@ EnsembleDefinition definition_in(const Hdf5File& file, const std::filesystem::pa
   d.keys = file.open(below("keys")).read_texts();
   d.outcomes = file.open(below("outcomes")).read_texts();
   d.columns = columns_in(file);
-  if (d.members < 1) refuse(name, "the file is damaged: there are no members");
+  if (d.members < 1) refuse_table(name, "the file is damaged: there are no members");
   return d;
 }
 
@@ -139,7 +139,7 @@ std::string EnsembleDefinition::digest() const {
     hash.add(std::ssize(texts));
     for (const std::string& text : texts) add(text);
   };
-  add(schema);
+  add(ensemble_schema);
   add(version());
   add(scene_toml);
   add_all(variations);
@@ -158,7 +158,7 @@ std::string EnsembleDefinition::digest() const {
 
 std::string EnsembleRow::bytes() const {
   std::string bytes;
-  for (const auto& [name, number] : integers) add_bytes(bytes, &(this->*number), sizeof(std::int64_t));
+  for (const auto& [name, number] : row_integers) add_bytes(bytes, &(this->*number), sizeof(std::int64_t));
   add_bytes(bytes, digest.data(), sizeof digest);
   add_bytes(bytes, &time, sizeof time);
   add_bytes(bytes, values.data(), values.size() * sizeof(double));
@@ -167,12 +167,22 @@ std::string EnsembleRow::bytes() const {
 
 EnsembleRow EnsembleRow::from_bytes(const char* bytes, std::size_t width) {
   EnsembleRow row;
-  for (const auto& [name, number] : integers) take_bytes(bytes, row.*number);
+  for (const auto& [name, number] : row_integers) take_bytes(bytes, row.*number);
   take_bytes(bytes, row.digest);
   take_bytes(bytes, row.time);
   row.values.resize(width);
   for (double& value : row.values) take_bytes(bytes, value);
   return row;
+}
+
+std::map<std::string, std::int64_t> outcomes_of(const EnsembleDefinition& definition,
+                                                const std::vector<EnsembleRow>& rows) {
+  std::map<std::string, std::int64_t> outcomes;
+  for (const EnsembleRow& row : rows) {
+    const bool known = row.outcome >= 0 && row.outcome < std::ssize(definition.outcomes);
+    ++outcomes[known ? definition.outcomes[static_cast<std::size_t>(row.outcome)] : "unknown"];
+  }
+  return outcomes;
 }
 
 std::string EnsembleTable::digest() const {
@@ -189,7 +199,7 @@ void write_ensemble(const std::filesystem::path& name, const EnsembleTable& tabl
   file.write(below("vary"), d.variations);
   file.write(below("keys"), d.keys);
   file.write(below("outcomes"), d.outcomes);
-  for (const auto& [dataset, number] : integers) {
+  for (const auto& [dataset, number] : row_integers) {
     std::vector<std::int64_t> values;
     for (const EnsembleRow& row : rows) values.push_back(row.*number);
     file.write(below(dataset), values, with_rows(rows.size(), {}));
@@ -206,13 +216,13 @@ void write_ensemble(const std::filesystem::path& name, const EnsembleTable& tabl
   std::size_t first = d.keys.size();
   for (std::size_t k = 0; k < d.columns.size(); ++k) {
     const EnsembleColumn& column = d.columns[k];
-    file.write(below(column.name), numbers_of(rows, first, size_of(column.width())),
+    file.write(below(column.name), numbers_of(rows, first, as_size(column.width())),
                with_rows(rows.size(), column.shape));
     file.set_attribute(below(column.name), "column", static_cast<std::int64_t>(k));
     file.set_attribute(below(column.name), "dimension", column.dimension);
     if (!column.columns.empty())
       file.set_attribute(below(column.name), "columns", fmt::format("{}", fmt::join(column.columns, " ")));
-    first += size_of(column.width());
+    first += as_size(column.width());
   }
   file.take_name();
 }
@@ -220,7 +230,7 @@ void write_ensemble(const std::filesystem::path& name, const EnsembleTable& tabl
 bool holds_ensemble(const std::filesystem::path& name) noexcept {
   try {
     const Hdf5File file = Hdf5File::open_to_read(name);
-    return file.has(ensemble_group) && file.text_attribute(ensemble_group, "schema") == schema;
+    return file.has(ensemble_group) && file.text_attribute(ensemble_group, "schema") == ensemble_schema;
   } catch (const std::exception&) {
     return false;
   }
@@ -228,11 +238,11 @@ bool holds_ensemble(const std::filesystem::path& name) noexcept {
 
 EnsembleTable read_ensemble(const std::filesystem::path& name) {
   if (name.extension() == ".rows") {
-    refuse(name, "these are the rows of an unfinished shard or ensemble; run it again, it goes on from there");
+    refuse_table(name, "these are the rows of an unfinished shard or ensemble; run it again, it goes on from there");
   }
   const Hdf5File file = Hdf5File::open_to_read(name);
-  if (!file.has(ensemble_group) || file.text_attribute(ensemble_group, "schema") != schema)
-    refuse(name, "this is not a file of an ensemble");
+  if (!file.has(ensemble_group) || file.text_attribute(ensemble_group, "schema") != ensemble_schema)
+    refuse_table(name, "this is not a file of an ensemble");
   EnsembleTable table;
   table.definition = definition_in(file, name);
   const EnsembleDefinition& d = table.definition;
@@ -241,20 +251,21 @@ EnsembleTable read_ensemble(const std::filesystem::path& name) {
   }
   const bool sane = table.shard.shards >= 1 && table.shard.shard >= 0 && table.shard.shard < table.shard.shards;
   if (!sane || file.text_attribute(ensemble_group, "definition") != d.digest()) {
-    refuse(name, "the file is damaged, or was written by another version; make it anew");
+    refuse_table(name, "the file is damaged, or was written by another version; make it anew");
   }
-  const auto count = size_of(file.open(below("member")).rows());
-  if (count != size_of(table.shard.count(d.members))) refuse(name, "the file is damaged: members are missing");
+  const auto count = as_size(file.open(below("member")).rows());
+  if (count != as_size(table.shard.count(d.members))) refuse_table(name, "the file is damaged: members are missing");
   table.rows.resize(count);
-  for (const auto& [dataset, number] : integers) {
+  for (const auto& [dataset, number] : row_integers) {
     const std::vector<std::int64_t> values = file.open(below(dataset)).read_integers();
-    if (values.size() != count) refuse(name, fmt::format("the file is damaged: '{}' is not of all members", dataset));
+    if (values.size() != count)
+      refuse_table(name, fmt::format("the file is damaged: '{}' is not of all members", dataset));
     for (std::size_t k = 0; k < count; ++k) table.rows[k].*number = values[k];
   }
   const auto reals = [&](const std::string& dataset, std::size_t width) {
     std::vector<double> values = file.open(below(dataset)).read_reals();
     if (values.size() != count * width)
-      refuse(name, fmt::format("the file is damaged: '{}' is not of all members", dataset));
+      refuse_table(name, fmt::format("the file is damaged: '{}' is not of all members", dataset));
     return values;
   };
   const auto append = [&](const std::string& dataset, std::size_t width) {
@@ -266,18 +277,19 @@ EnsembleTable read_ensemble(const std::filesystem::path& name) {
   };
   const std::vector<double> times = reals("time", 1);
   const std::vector<std::int64_t> digests = file.open(below("digest")).read_integers();
-  if (digests.size() != count * EnsembleRow{}.digest.size()) refuse(name, "the file is damaged: digests are missing");
+  if (digests.size() != count * EnsembleRow{}.digest.size())
+    refuse_table(name, "the file is damaged: digests are missing");
   for (std::size_t k = 0; k < count; ++k) {
     EnsembleRow& row = table.rows[k];
     row.time = times[k];
     std::copy_n(digests.begin() + static_cast<std::ptrdiff_t>(k * row.digest.size()), row.digest.size(),
                 row.digest.begin());
     if (row.member != table.shard.shard + static_cast<std::int64_t>(k) * table.shard.shards) {
-      refuse(name, "the file is damaged: its members are out of order");
+      refuse_table(name, "the file is damaged: its members are out of order");
     }
   }
   append("parameters", d.keys.size());
-  for (const EnsembleColumn& column : d.columns) append(column.name, size_of(column.width()));
+  for (const EnsembleColumn& column : d.columns) append(column.name, as_size(column.width()));
   return table;
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,10 @@ struct EnsembleShard {
   /// How many of so many members.
   std::int64_t count(std::int64_t members) const { return (members - shard + shards - 1) / shards; }
 };
+
+/// How often members have ended in each way.
+std::map<std::string, std::int64_t> outcomes_of(const EnsembleDefinition& definition,
+                                                const std::vector<EnsembleRow>& rows);
 
 /// All rows of an ensemble, or of a shard of it, in the order of members.
 struct EnsembleTable {

@@ -18,8 +18,9 @@ namespace noether::io {
 
 namespace {
 
-constexpr std::string_view mark = "noether-ensemble-rows-1 ";
-constexpr std::size_t fixed_bytes = 9 * 8;  ///< of a row without values: four whole numbers, the digest and the time
+constexpr std::string_view rows_mark = "noether-ensemble-rows-1 ";
+constexpr std::size_t row_fixed_bytes =
+    9 * 8;  ///< of a row without values: four whole numbers, the digest and the time
 
 /// FNV-1a: a row that was torn is not taken for one.
 std::uint64_t checksum(std::string_view bytes) {
@@ -41,7 +42,7 @@ std::filesystem::path ensemble_journal_of(const std::filesystem::path& file) { r
 EnsembleJournal::EnsembleJournal(std::filesystem::path file, const EnsembleDefinition& definition, bool fresh)
     : file_(std::move(file)),
       width_(static_cast<std::size_t>(definition.width())),
-      header_(std::string(mark) + definition.digest() + "\n") {
+      header_(std::string(rows_mark) + definition.digest() + "\n") {
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_APPEND, 0666);
   if (descriptor_ < 0) {
     throw FileError(fmt::format("the file cannot be written: {}", std::strerror(errno)), {.file = file_.string()});
@@ -70,7 +71,7 @@ void EnsembleJournal::lock() {
 
 void EnsembleJournal::begin(bool fresh) {
   const std::string bytes = fresh ? std::string() : read_bytes(file_);
-  if (!bytes.empty() && bytes.starts_with(mark) && !bytes.starts_with(header_) && bytes.size() >= header_.size()) {
+  if (!bytes.empty() && bytes.starts_with(rows_mark) && !bytes.starts_with(header_) && bytes.size() >= header_.size()) {
     throw SceneError(
         "these are rows of another ensemble, which is unfinished; give another file with --out, or --fresh to discard "
         "them",
@@ -88,7 +89,7 @@ void EnsembleJournal::begin(bool fresh) {
 }
 
 void EnsembleJournal::read_rows(const std::string& bytes) {
-  const std::size_t row = fixed_bytes + width_ * sizeof(double), whole = row + sizeof(std::uint64_t);
+  const std::size_t row = row_fixed_bytes + width_ * sizeof(double), whole = row + sizeof(std::uint64_t);
   std::size_t at = header_.size();
   for (; at + whole <= bytes.size(); at += whole) {
     if (checksum({bytes.data() + at, row}) != number_at(bytes.data() + at + row)) break;

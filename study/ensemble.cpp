@@ -39,7 +39,7 @@ class Driver {
   void make(const std::vector<std::int64_t>& members) {
     wanted_ = std::ssize(members);
     members_ = &members;
-    at_once_ = options_.in_lanes ? 8 : 1;
+    at_once_ = scene_.definition().in_lanes ? 8 : 1;
     const auto batches = static_cast<Index>((members.size() + at_once_ - 1) / at_once_);
     detail::share_blocks(
         batches, [](const void* self, Index k) noexcept { static_cast<const Work*>(self)->driver->make_batch(k); },
@@ -61,7 +61,7 @@ class Driver {
       const std::size_t first = static_cast<std::size_t>(k) * at_once_;
       const std::size_t count = std::min(at_once_, members_->size() - first);
       for (EnsembleMember& one :
-           run_members(scene_, std::span(*members_).subspan(first, count), options_.in_lanes, stop_)) {
+           run_members(scene_, std::span(*members_).subspan(first, count), scene_.definition().in_lanes, stop_)) {
         one.row ? keep(std::move(*one.row), one.refusal) : interrupt();
       }
     } catch (...) {
@@ -126,6 +126,14 @@ io::EnsembleTable finished_table(const fs::path& file, const io::EnsembleDefinit
   return table;
 }
 
+/// Whether members that follow each other have one make: lanes share the method, the step and the forces.
+bool neighbors_are_alike(const EnsemblePlan& plan) {
+  const std::vector<std::string> keys = plan.fastest_keys();
+  return std::all_of(keys.begin(), keys.end(), [](const std::string& key) {
+    return key.starts_with("particles.") || key.starts_with("stop.") || key.starts_with("every.");
+  });
+}
+
 void check_shard(const io::EnsembleShard& shard) {
   if (shard.shards >= 1 && shard.shard >= 0 && shard.shard < shard.shards) return;
   throw Error(shard.shards < 1 ? fmt::format("there are no {} shards; 1 or more are expected", shard.shards)
@@ -136,10 +144,7 @@ void check_shard(const io::EnsembleShard& shard) {
 void count_outcomes(EnsembleReport& report, const io::EnsembleDefinition& definition,
                     const std::vector<io::EnsembleRow>& rows) {
   report.rows = std::ssize(rows);
-  for (const io::EnsembleRow& row : rows) {
-    const auto kind = static_cast<std::size_t>(row.outcome);
-    ++report.outcomes[kind < definition.outcomes.size() ? definition.outcomes[kind] : "unknown"];
-  }
+  report.outcomes = io::outcomes_of(definition, rows);
 }
 
 EnsembleReport make_rows(const EnsembleScene& scene, const fs::path& file, const EnsembleOptions& options,
@@ -186,7 +191,8 @@ fs::path shard_file(const fs::path& file, const io::EnsembleShard& shard) {
 EnsembleReport run_ensemble(const fs::path& scene_file, const EnsemblePlan& plan, const EnsembleOptions& options,
                             const Parts& parts) {
   check_shard(options.shard);
-  const EnsembleScene scene(scene_file, plan, options.sets, options.in_lanes, parts);
+  const bool in_lanes = options.in_lanes && neighbors_are_alike(plan);
+  const EnsembleScene scene(scene_file, plan, options.sets, in_lanes, parts);
   const io::EnsembleDefinition& definition = scene.definition();
   const fs::path file =
       shard_file(options.out.empty() ? default_ensemble_file(scene_file) : options.out, options.shard);
@@ -197,6 +203,7 @@ EnsembleReport run_ensemble(const fs::path& scene_file, const EnsemblePlan& plan
   report.wanted = options.shard.count(definition.members);
   report.simd = definition.simd;
   report.threads = thread_count();
+  report.notes = scene.notes();
   if (!file.has_filename() || fs::is_directory(file)) {
     throw SceneError("this is a folder, and a file is expected; give one with --out", {.file = file.string()});
   }
@@ -219,23 +226,24 @@ EnsembleReport run_ensemble(const fs::path& scene_file, const EnsemblePlan& plan
 std::string to_json(const EnsembleReport& r) {
   Json::Members outcomes;
   for (const auto& [name, count] : r.outcomes) outcomes.emplace_back(name, count);
-  return Json::object({{"schema", "noether.ensemble/1"},
-                       {"scene", r.scene},
-                       {"file", r.file.empty() ? Json() : Json(r.file.string())},
-                       {"shard", r.shard.shard},
-                       {"shards", r.shard.shards},
-                       {"members", r.members},
-                       {"wanted", r.wanted},
-                       {"done", r.rows},
-                       {"done_before", r.done_before},
-                       {"outcomes", Json::object(outcomes)},
-                       {"refusal", r.refusal.empty() ? Json() : Json(r.refusal)},
-                       {"interrupted", r.interrupted},
-                       {"threads", r.threads},
-                       {"simd", r.simd},
-                       {"wall_s", r.wall_s},
-                       {"digest", r.digest.empty() ? Json() : Json(r.digest)}})
-      .text();
+  Json::Members members = {{"schema", "noether.ensemble/1"},
+                           {"scene", r.scene},
+                           {"file", r.file.empty() ? Json() : Json(r.file.string())},
+                           {"shard", r.shard.shard},
+                           {"shards", r.shard.shards},
+                           {"members", r.members},
+                           {"wanted", r.wanted},
+                           {"done", r.rows},
+                           {"done_before", r.done_before},
+                           {"outcomes", Json::object(outcomes)},
+                           {"refusal", r.refusal.empty() ? Json() : Json(r.refusal)},
+                           {"interrupted", r.interrupted},
+                           {"threads", r.threads},
+                           {"simd", r.simd},
+                           {"wall_s", r.wall_s},
+                           {"digest", r.digest.empty() ? Json() : Json(r.digest)}};
+  if (!r.notes.empty()) members.emplace_back("notes", Json::list_of(r.notes));
+  return Json::object(members).text();
 }
 
 std::string to_text(const EnsembleReport& r) {

@@ -42,6 +42,7 @@ struct EnsembleReport {
   int threads = 1;
   double wall_s = 0;  ///< of the members made here
   bool interrupted = false;
+  std::vector<std::string> notes = {};  ///< what of the scene was taken otherwise than written, and its warnings
 };
 
 /// The file of an ensemble unless told, in the working directory: NAME.ensemble.h5 (`default_output_folder`).

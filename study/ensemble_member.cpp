@@ -6,6 +6,7 @@
 #include "scene/minimize.hpp"
 #include "scene/set_option.hpp"
 #include "scene/toml.hpp"
+#include "scene/warnings.hpp"
 
 #include <fmt/format.h>
 
@@ -20,11 +21,11 @@ namespace noether {
 
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_figure = std::numeric_limits<double>::quiet_NaN();
 using Figure = std::pair<const char*, std::optional<double> MonitorReport::*>;
-constexpr Figure figures[] = {{"first", &MonitorReport::first}, {"last", &MonitorReport::last},
-                              {"worst", &MonitorReport::worst}, {"rms", &MonitorReport::rms},
-                              {"slope", &MonitorReport::slope}, {"slope_error", &MonitorReport::slope_error}};
+constexpr Figure report_figures[] = {{"first", &MonitorReport::first}, {"last", &MonitorReport::last},
+                                     {"worst", &MonitorReport::worst}, {"rms", &MonitorReport::rms},
+                                     {"slope", &MonitorReport::slope}, {"slope_error", &MonitorReport::slope_error}};
 
 constexpr auto last_kind = Outcome::Kind::inverted_element;
 constexpr std::int64_t refused_outcome = static_cast<std::int64_t>(last_kind) + 1;
@@ -85,7 +86,7 @@ std::vector<io::EnsembleColumn> columns_of(const std::string& name, AnyMonitor<d
   std::vector<io::EnsembleColumn> columns;
   if (monitor.records()) return columns;
   if (monitor.report()) {
-    for (const auto& [figure, value] : figures) columns.push_back({.name = name + "_" + figure});
+    for (const auto& [figure, value] : report_figures) columns.push_back({.name = name + "_" + figure});
   }
   for (const Series& one : monitor.series()) {
     columns.push_back(
@@ -100,8 +101,8 @@ std::vector<std::pair<std::string, std::vector<double>>> values_of(const std::st
   std::vector<std::pair<std::string, std::vector<double>>> values;
   if (monitor.records()) return values;
   if (const auto report = monitor.report()) {
-    for (const auto& [figure, value] : figures) {
-      values.emplace_back(name + "_" + figure, std::vector<double>{(*report.*value).value_or(none)});
+    for (const auto& [figure, value] : report_figures) {
+      values.emplace_back(name + "_" + figure, std::vector<double>{(*report.*value).value_or(no_figure)});
     }
   }
   for (Series& one : monitor.series()) values.emplace_back(name + "_" + one.name, std::move(one.values));
@@ -145,6 +146,8 @@ EnsembleScene::EnsembleScene(const std::filesystem::path& file, const EnsemblePl
     definition_.variations.push_back(one.text);
     definition_.keys.push_back(one.key);
   }
+  notes_ = scene.notes;
+  for (const std::string& warning : warnings_of(scene)) notes_.push_back(warning);
   Simulation<double> sim = first.assemble(watched_only());
   add_columns(sim, scene);
 }
@@ -180,8 +183,8 @@ SceneRun EnsembleScene::member(std::int64_t member) const {
 }
 
 io::EnsembleRow EnsembleScene::row(std::int64_t member) const {
-  io::EnsembleRow row{.member = member, .time = none, .values = plan_.values(member)};
-  row.values.resize(static_cast<std::size_t>(definition_.width()), none);
+  io::EnsembleRow row{.member = member, .time = no_figure, .values = plan_.values(member)};
+  row.values.resize(static_cast<std::size_t>(definition_.width()), no_figure);
   return row;
 }
 

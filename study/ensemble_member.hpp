@@ -26,6 +26,8 @@ class EnsembleScene {
                 bool in_lanes, const Parts& parts);
 
   const io::EnsembleDefinition& definition() const { return definition_; }
+  /// What of the scene was taken otherwise than written, and its warnings.
+  const std::vector<std::string>& notes() const { return notes_; }
 
   /// The scene of a member; brought to a minimum where it asks for one.
   /// @throws Error  where its values make no scene
@@ -51,6 +53,7 @@ class EnsembleScene {
   SceneValue root_;  ///< as it was written
   VariedKeys keys_;
   io::EnsembleDefinition definition_;
+  std::vector<std::string> notes_;
 };
 
 /// Runs a member by itself, as `noether run` does. Empty where it was interrupted.

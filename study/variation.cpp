@@ -179,6 +179,14 @@ std::vector<double> EnsemblePlan::values(std::int64_t member) const {
   return values;
 }
 
+std::vector<std::string> EnsemblePlan::fastest_keys() const {
+  std::vector<std::string> drawn;
+  for (const Variation& one : variations_) {
+    if (one.drawn()) drawn.push_back(one.key);
+  }
+  return drawn.empty() ? std::vector<std::string>{variations_.back().key} : drawn;
+}
+
 std::vector<double> EnsemblePlan::typical_values() const {
   std::vector<double> values;
   for (const Variation& one : variations_) values.push_back(one.first);

@@ -54,6 +54,8 @@ class EnsemblePlan {
 
   /// The values of a member, in the order of the variations.
   std::vector<double> values(std::int64_t member) const;
+  /// What differs from one member to the next: the keys that are drawn, else that of the last grid.
+  std::vector<std::string> fastest_keys() const;
   /// The first value of a grid, the lower end of a uniform draw, the mean of a normal one.
   std::vector<double> typical_values() const;
 

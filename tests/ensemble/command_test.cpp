@@ -27,6 +27,19 @@ TEST_CASE("ensemble writes a table and says what has become of its members, fail
   CHECK(json_member(again, "schema") == "\"noether.ensemble/1\"");
   CHECK(json_member(again, "done_before") == "20");
   CHECK(has(text, json_member(again, "digest").substr(1, 71)));
+  const std::string info = output(folder, "info scene.ensemble.h5 --json");
+  CHECK(is_json_line(info));
+  CHECK(json_member(info, "kind") == "\"ensemble\"");
+  for (const char* key : {"members", "outcomes", "digest"}) CHECK(json_member(info, key) == json_member(again, key));
+  CHECK(has(output(folder, "info scene.ensemble.h5"), "  5 refused\n"));
+}
+
+TEST_CASE("what of the scene is taken otherwise than written is told once, not once a member", "[cli][ensemble]") {
+  const SceneFolder folder(replaced(planets(), "steps = 200", "until = 10.03"));
+  const ProcessResult result = noether(folder, "ensemble scene.toml" + vary);
+  CHECK(result.exit_code == 0);
+  CHECK(line_count(result.err) == 1);
+  CHECK(has(result.err, "is 100.3 steps of 0.1"));
 }
 
 TEST_CASE("shards are those that are asked for, or those of mpirun, mpiexec and srun", "[cli][ensemble]") {
@@ -53,6 +66,29 @@ TEST_CASE("shards are those that are asked for, or those of mpirun, mpiexec and 
   CHECK(missing.err == "of 2 shards 0 is missing; run it first, by --shard 0/2\n");
 }
 
+TEST_CASE("two processes of mpirun, where there is one, make two shards", "[cli][ensemble][slow]") {
+  const SceneFolder folder(planets());
+  const auto shell = [&](const std::string& line) {
+    // The variables let Open MPI start two processes on one processor, as any user; MPICH asks for neither.
+    return run_process({"/bin/sh", "-c",
+                        "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+                        "OMPI_MCA_rmaps_base_oversubscribe=1 " +
+                            line},
+                       folder.path());
+  };
+  if (shell("command -v mpirun").exit_code != 0) {
+    WARN("mpirun is not installed");
+    return;
+  }
+  const ProcessResult made =
+      shell(fmt::format("mpirun -n 2 {} ensemble scene.toml --out map.h5 --threads 1{}", NOETHER_PROGRAM, vary));
+  INFO(made.out << made.err);
+  REQUIRE(made.exit_code == 0);
+  output(folder, "merge map.h5.0-of-2 map.h5.1-of-2 --out map.h5");
+  output(folder, "ensemble scene.toml --out whole.h5" + vary);
+  CHECK(read_text(folder / "map.h5") == read_text(folder / "whole.h5"));
+}
+
 TEST_CASE("what an ensemble cannot be made of is refused in one line", "[cli][ensemble]") {
   const SceneFolder folder(planets());
   const auto refused = [&](const std::string& arguments, const std::string& why, int code = 2) {
@@ -77,25 +113,33 @@ TEST_CASE("what an ensemble cannot be made of is refused in one line", "[cli][en
 }
 
 TEST_CASE("an ensemble that is killed goes on where it was, to the same bytes", "[cli][ensemble][slow]") {
-  const SceneFolder folder(planets("type = \"wisdom_holman\"", "verlet_aba", 20'000));
-  const std::string all = " --vary particles.body.c.a=1.5:1.8:40 --vary particles.body.c.e=0:0.1:5";
+  const SceneFolder folder(planets("type = \"wisdom_holman\"", "verlet_aba", 5'000));
+  const std::string all = " --vary particles.body.c.a=1.5:1.8:40 --vary particles.body.c.e=0:0.1:25";
   output(folder, "ensemble scene.toml --out whole.h5" + all);
   int killed = 0;
-  for (int attempt = 0; attempt < 20 && !std::filesystem::exists(folder / "map.h5"); ++attempt) {
-    const std::filesystem::path rows = folder / "map.h5.rows";
-    const std::uintmax_t before = std::filesystem::exists(rows) ? std::filesystem::file_size(rows) : 0;
-    Process one(command("ensemble scene.toml --out map.h5" + all), folder.path());
-    wait_until([&] {
-      return std::filesystem::exists(folder / "map.h5") ||
-             (std::filesystem::exists(rows) && std::filesystem::file_size(rows) > before + 4000);
-    });
-    one.signal(SIGKILL);
-    killed += one.wait().exit_code == 128 + SIGKILL ? 1 : 0;
+  std::string files;
+  for (int shard = 0; shard < 4; ++shard) {
+    const std::string name = fmt::format("map.h5.{}-of-4", shard);
+    const std::string line = fmt::format("ensemble scene.toml --out map.h5 --shard {}/4", shard) + all;
+    const std::filesystem::path file = folder / name, rows = folder / (name + ".rows");
+    files += " " + name;
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      const std::uintmax_t before = std::filesystem::exists(rows) ? std::filesystem::file_size(rows) : 0;
+      Process one(command(line), folder.path());
+      wait_until([&] {
+        std::error_code gone;
+        const std::uintmax_t now = std::filesystem::file_size(rows, gone);
+        return std::filesystem::exists(file) || (!gone && now > before + 4000 * (1 + attempt));
+      });
+      one.signal(SIGKILL);
+      killed += one.wait().exit_code == 128 + SIGKILL ? 1 : 0;
+    }
+    output(folder, line);
+    CHECK_FALSE(std::filesystem::exists(rows));
   }
   CHECK(killed > 0);
-  output(folder, "ensemble scene.toml --out map.h5" + all);
+  output(folder, "merge" + files + " --out map.h5");
   CHECK(read_text(folder / "map.h5") == read_text(folder / "whole.h5"));
-  CHECK_FALSE(std::filesystem::exists(folder / "map.h5.rows"));
 }
 
 }  // namespace

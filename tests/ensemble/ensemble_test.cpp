@@ -95,6 +95,15 @@ TEST_CASE("rows have the same bits in any company, by any number of threads", "[
   }
 }
 
+TEST_CASE("members whose neighbours have other steps or forces go one by one", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  write_text(folder / "scene.toml", planets());
+  const std::string step = "integrator.step=0.05:0.1:2", axis = "particles.body.c.a=1.6:1.8:2";
+  CHECK_FALSE(rows_of(folder, plan_of({axis, step}), "by_steps.h5").definition.in_lanes);
+  CHECK(rows_of(folder, plan_of({step, axis}), "by_axes.h5").definition.in_lanes);
+  CHECK_FALSE(rows_of(folder, plan_of({axis, "integrator.step=uniform(0.05,0.1)"}, 2), "drawn.h5").definition.in_lanes);
+}
+
 TEST_CASE("shards are put together to the bytes of one file, for any number of them", "[ensemble]") {
   const ScratchFolder folder;
   write_text(folder / "scene.toml", planets());
