@@ -91,7 +91,8 @@ template <class F, class Real = double> class ShearingSheet {
 
   void flow(char letter, ParticleSystem<Real>& s, const Real& h);
   Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h);
-  /// Letter by letter; in a box the end of a drift across two steps follows from the word.
+  /// Letter by letter; in a box the end of a drift across two steps follows from the word. Where no forces act a block
+  /// of particles makes many steps at a time, with the same bits.
   Advance run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span);
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s);
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a);
@@ -116,7 +117,7 @@ template <class F, class Real = double> class ShearingSheet {
   }
 
  private:
-  static constexpr bool remembers = std::is_same_v<Real, double>;
+  static constexpr bool remembers = std::is_same_v<Real, double>, in_blocks = remembers;
   static constexpr bool knows_boxes = std::is_same_v<Real, double> || std::is_same_v<Real, Quad>;
   struct NoBox {};
   struct Known {
@@ -126,6 +127,8 @@ template <class F, class Real = double> class ShearingSheet {
 
   const Epicycle<Real>& epicycle(const Real& h);
   void move(ParticleSystem<Real>& s, const Epicycle<Real>& epicycle);
+  Advance run_free(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span);
+  void move_all(ParticleSystem<Real>& s);
   /// @param end  time at the end of an epicycle
   void flow_in_box(char letter, ParticleSystem<Real>& s, const Real& h, const Real& end);
 
@@ -134,6 +137,8 @@ template <class F, class Real = double> class ShearingSheet {
   HillFrame frame_;
   std::array<Known, remembers ? 32 : 1> known_;  ///< a word has few lengths, and theirs take longer than a small step
   std::size_t count_ = 0, next_ = 0;
+  std::array<Epicycle<Real>, in_blocks ? 64 : 1> arcs_;  ///< that all particles are still to make
+  std::size_t waiting_ = 0;
   std::conditional_t<knows_boxes, ShearedBox<Real>, NoBox> box_;
   bool boxed_ = false;
   std::int64_t evaluations_ = 0;  ///< in a box

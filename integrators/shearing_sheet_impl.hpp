@@ -87,7 +87,44 @@ void ShearingSheet<F, Real>::flow_in_box(char letter, ParticleSystem<Real>& s, c
 }
 
 template <class F, class Real>
+Advance ShearingSheet<F, Real>::run_free(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+  const Real dt(s.clock().dt());
+  Advance done;
+  while (done.steps < span.steps) {
+    word.step(s.phase(), [&](char letter, const Real& weight, const Real& /*nothing acts*/) {
+      if (letter != 'A') return;
+      const Epicycle<Real>& next = epicycle(Real(weight * dt));
+      if (next.turns() || waiting_ == arcs_.size()) move_all(s);
+      if (next.turns()) return move(s, next);
+      arcs_[waiting_++] = next;
+    });
+    s.clock().tick(Real(0));
+    ++done.steps;
+    if (span.asked_to_stop()) break;
+  }
+  move_all(s);
+  return done;
+}
+
+template <class F, class Real> void ShearingSheet<F, Real>::move_all(ParticleSystem<Real>& s) {
+  const std::size_t count = std::exchange(waiting_, 0);
+  if (count == 0) return;
+  kicks_.note_move();
+  auto &x = s.positions(), &v = s.velocities();
+  const auto move = simd_loop<Epicycle<Real>::move>();
+  for_blocks(s.size(), [&](Index begin, Index end) {
+    for (std::size_t k = 0; k < count; ++k) {
+      move(arcs_[k], x.component(0), x.component(1), x.component(2), v.component(0), v.component(1), v.component(2),
+           begin, end);
+    }
+  });
+}
+
+template <class F, class Real>
 Advance ShearingSheet<F, Real>::run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+  if constexpr (in_blocks) {
+    if (!boxed_ && !forces_act_ && s.low_words() == nullptr) return run_free(word, s, span);
+  }
   if (!boxed_) return walk_letters(*this, word, s, span, [&](char letter, const Real& h) { flow(letter, s, h); });
   const Real dt(s.clock().dt()), first = word.stages().front().weight;
   std::int64_t step = s.clock().step() - 1;

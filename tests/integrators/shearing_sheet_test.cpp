@@ -303,6 +303,30 @@ TEST_CASE("what is no sheet is refused in one line", "[integrators][shearing_she
         "Omega_z = -2 is not a valid angular velocity; 0 (no force along z) or more is expected");
 }
 
+TEST_CASE("many steps at a time of free particles have the bits of each step alone", "[integrators][shearing_sheet]") {
+  ParticleSystem<double> s(unit_system("reduced"));
+  for (Index i = 0; i < 3000; ++i) {
+    const double k = static_cast<double>(i);
+    s.add("", 1, {std::sin(k), std::cos(3 * k), 0.1 * std::sin(7 * k)}, {0.1 * std::cos(k), -1.5 * std::sin(k), 0.02});
+  }
+  for (const Scheme* scheme : {&schemes::verlet, &schemes::verlet_aba, &schemes::yoshida_6}) {
+    for (const double h : {0.05, 2.0}) {  // of the second some are beyond half a turn
+      const auto hamiltonian = sheet<double>({.Omega = 1.1, .Omega_z = 1.7});
+      Composition<AnyHamiltonian<double>> stepped(hamiltonian, *scheme);
+      ParticleSystem<double> alone = s, together = s;
+      alone.clock() = together.clock() = Clock<double>::fixed(0, h);
+      stepped.bind(alone);
+      for (int k = 0; k < 150; ++k) stepped.advance(alone, {.steps = 1});
+      Composition<AnyHamiltonian<double>> at_once(hamiltonian, *scheme);
+      at_once.bind(together);
+      at_once.advance(together, {.steps = 150});
+      CHECK((alone.positions().all() == together.positions().all()));
+      CHECK((alone.velocities().all() == together.velocities().all()));
+      CHECK(alone.clock().step() == together.clock().step());
+    }
+  }
+}
+
 TEST_CASE("threads do not change a sheet of many particles", "[integrators][shearing_sheet]") {
   ParticleSystem<double> s(unit_system("reduced"));
   for (Index i = 0; i < 5000; ++i) {
