@@ -96,6 +96,13 @@ Evaluation evaluate(const Scene& scene, bool check) {
       s.box().is_periodic() && scene.hamiltonian.constraints.empty() && !(has_bodies(s) && s.bodies()->any_held());
   std::size_t own = scene.hamiltonian.splitting.own.size();  // these pull at centres of bodies
   std::vector<SceneForce> terms = scene.hamiltonian.terms();
+  // Where a splitting has forces of its own that know no box, it knows the box itself: images slide there.
+  const std::vector<SceneForce>& inside = scene.hamiltonian.splitting.own;
+  const bool whole = !scene.hamiltonian.splitting.only_forces ||
+                     (s.box().is_periodic() && std::any_of(inside.begin(), inside.end(), [](const SceneForce& force) {
+                        return !force.force.claims().periodic;
+                      }));
+  if (scene.hamiltonian.splitting.only_forces && whole) terms.clear();
   for (const SceneForce& force : scene.hamiltonian.forces) {  // a letter of its own that has a potential: tides
     if (force.letter && force.force.claims().on_bodies) terms.push_back(force);
   }
@@ -122,7 +129,7 @@ Evaluation evaluate(const Scene& scene, bool check) {
     if (check && !failed && claims.energy && !claims.velocity_dependent)  // else it is the gradient of nothing
       result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(bound, s));
   }
-  if (!scene.hamiltonian.splitting.only_forces) {
+  if (whole) {
     add_hamiltonian(scene, s, result);
     has_pressure = false;
   }

@@ -333,7 +333,8 @@ class SceneReader {
     set_kick(reader, force);
     if (scene_.hamiltonian.rotating) check_force_on_bodies(reader, *kind, force, scene_.hamiltonian, scene_.particles);
     try {
-      (force.letter ? force.force : scene_.hamiltonian.on_bodies(force.force)).check(scene_.particles);
+      if (!sums_images_of(scene_.hamiltonian.splitting, force, scene_.particles))
+        (force.letter ? force.force : scene_.hamiltonian.on_bodies(force.force)).check(scene_.particles);
     } catch (const Error& error) {
       const SceneValue* file = root_.find("particles")->find("structure");
       const bool of_file = error.key() == "structure" && file != nullptr;

@@ -122,6 +122,17 @@ void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind,
   }
 }
 
+bool sums_images_of(const SceneSplitting& splitting, const SceneForce& force, const ParticleSystem<double>& particles) {
+  if (!particles.box().is_periodic() || force.force.claims().periodic || force.letter) return false;
+  try {
+    ParticleSystem<double> s = particles;
+    splitting.make(ForceField<double>().add(force.force)).bind(s);
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
 void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
                            const SceneHamiltonian& made, const ParticleSystem<double>& s) {
   const ForceClaims claims = force.force.claims();

@@ -22,6 +22,9 @@ void set_kick(TableReader& reader, SceneForce& force);
 void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
                         const SceneHamiltonian& made, const Parts& parts);
 
+/// Whether a splitting sums a force over images itself, though the force knows none: in boxes whose images slide.
+bool sums_images_of(const SceneSplitting& splitting, const SceneForce& force, const ParticleSystem<double>& particles);
+
 /// Refuses a force that cannot act on the sites of rigid bodies, or on bodies themselves, and one that has the second
 /// degree of particle 0, a rigid body, beside another one that has it.
 /// @param made  the forces that stand before it
