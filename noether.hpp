@@ -78,6 +78,7 @@
 #include "monitors/orbital_monitors.hpp"
 #include "monitors/pressure.hpp"
 #include "monitors/radial_distribution.hpp"
+#include "monitors/resonance_angle.hpp"
 #include "monitors/shadow_hamiltonian.hpp"
 #include "monitors/spin.hpp"
 #include "monitors/temperature.hpp"

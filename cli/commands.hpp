@@ -26,6 +26,7 @@ void add_describe_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_info_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_verify_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_convert_command(CLI::App& app, const Parts& parts, int& exit_code);
+void add_frequencies_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_plot_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_help_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_version_command(CLI::App& app, const Parts& parts, int& exit_code);

@@ -58,15 +58,28 @@ std::size_t shown_frame(const FramesInFile& found, std::optional<std::int64_t> w
 
 /// What the picture takes from monitors: without the numbers that nothing draws.
 std::vector<io::MonitorSeries> drawn_monitors(const std::filesystem::path& file) {
-  static const std::vector<std::string> names = {
-      "energy",      "shadow_hamiltonian", "momentum",  "angular_momentum",    "constraint_residual",      "elements",
-      "temperature", "pressure",           "dihedrals", "radial_distribution", "mean_square_displacement", "spin"};
+  static const std::vector<std::string> names = {"energy",
+                                                 "shadow_hamiltonian",
+                                                 "momentum",
+                                                 "angular_momentum",
+                                                 "constraint_residual",
+                                                 "elements",
+                                                 "temperature",
+                                                 "pressure",
+                                                 "dihedrals",
+                                                 "radial_distribution",
+                                                 "mean_square_displacement",
+                                                 "spin",
+                                                 "resonance_angle",
+                                                 "megno",
+                                                 "lyapunov"};
   const auto drawn = [](const std::string& monitor, const std::string& quantity) {
     const auto name =
         std::find_if(names.begin(), names.end(), [&](const auto& one) { return monitor.starts_with(one); });
     if (name == names.end()) return false;
     if (*name == "dihedrals") return quantity == "angle" || quantity == "density" || quantity == "fraction";
     if (*name == "spin") return quantity == "angle" || quantity == "rate";
+    if (*name == "megno" || *name == "lyapunov") return quantity == "mean" || quantity == "exponent";
     const bool error = *name == "energy" || name->ends_with("momentum");
     return quantity == "relative_error" || quantity == "worst" ||
            (!error && (quantity == "value" || quantity == "lag" || quantity == "distance"));
@@ -296,8 +309,9 @@ const io::MonitorSeries* find_monitor(const std::vector<io::MonitorSeries>& moni
 }
 
 const std::vector<std::string>& plot_subjects() {
-  static const std::vector<std::string> subjects = {"positions", "errors", "elements", "temperature", "pressure",
-                                                    "dihedrals", "rdf",    "msd",      "axes",        "spin"};
+  static const std::vector<std::string> subjects = {"positions", "errors",    "elements",   "temperature",
+                                                    "pressure",  "dihedrals", "rdf",        "msd",
+                                                    "axes",      "spin",      "resonances", "chaos"};
   return subjects;
 }
 
@@ -326,6 +340,8 @@ PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts, c
     page.add("elements", plot_elements(source), "the monitor elements, or frames about a body with most of the mass");
     if (data.legend.empty() && data.boxes.empty()) data.legend = body_legend(source.frames);
   }
+  if (page.wants("resonances", true)) page.add("resonances", plot_resonances(source), "the monitor resonance_angle");
+  if (page.wants("chaos", true)) page.add("chaos", plot_chaos(source), "the monitor megno or lyapunov");
   const bool heat = periodic || find_monitor(source.monitors, "temperature") != nullptr;
   if (page.wants("temperature", heat)) {
     page.add("temperature", plot_temperature(source), "the monitor temperature, or two frames and no constraints");

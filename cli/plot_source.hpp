@@ -73,6 +73,10 @@ std::optional<PlotPanel> plot_pressure(const PlotSource& source);
 std::optional<PlotPanel> plot_axes(const PlotSource& source);
 /// The angle of a resonance of spin and orbit against time, or the rates of a body that has no orbit, from a monitor.
 std::optional<PlotPanel> plot_spin(const PlotSource& source);
+/// Angles of resonances of mean motions against time, one for each monitor.
+std::vector<PlotPanel> plot_resonances(const PlotSource& source);
+/// The mean exponential growth factor of nearby orbits and Lyapunov exponents against time, from their monitors.
+std::vector<PlotPanel> plot_chaos(const PlotSource& source);
 /// The histogram of dihedral angles over the run, from a monitor.
 std::optional<PlotPanel> plot_dihedrals(const PlotSource& source);
 

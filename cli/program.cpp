@@ -142,10 +142,10 @@ int parse(CLI::App& app, int argc, char** argv, int& exit_code, bool json) {
 
 /// In the order of the help.
 constexpr void (*all_commands[])(CLI::App&, const Parts&, int&) = {
-    add_run_command,       add_evaluate_command, add_explain_command, add_compare_command, add_advise_command,
-    add_stability_command, add_ensemble_command, add_merge_command,   add_list_command,    add_describe_command,
-    add_info_command,      add_verify_command,   add_convert_command, add_plot_command,    add_view_command,
-    add_help_command,      add_version_command,
+    add_run_command,       add_evaluate_command, add_explain_command, add_compare_command,     add_advise_command,
+    add_stability_command, add_ensemble_command, add_merge_command,   add_list_command,        add_describe_command,
+    add_info_command,      add_verify_command,   add_convert_command, add_frequencies_command, add_plot_command,
+    add_view_command,      add_help_command,     add_version_command,
 };
 
 int run_command(int argc, char** argv, const Parts& parts, bool json) {

@@ -66,6 +66,7 @@
 #include "monitors/orbital_monitors.hpp"
 #include "monitors/pressure.hpp"
 #include "monitors/radial_distribution.hpp"
+#include "monitors/resonance_angle.hpp"
 #include "monitors/shadow_hamiltonian.hpp"
 #include "monitors/spin.hpp"
 #include "monitors/temperature.hpp"
@@ -240,6 +241,7 @@ Parts standard_parts() {
   parts.add_monitor<OrientationDefect>();
   parts.add_monitor<TurningEnergy>();
   parts.add_monitor<Elements>();
+  parts.add_monitor<ResonanceAngle>();
   parts.add_monitor<ClosestApproach>();
   parts.add_monitor<Temperature>();
   parts.add_monitor<Pressure>();

@@ -25,7 +25,7 @@ TEST_CASE("--version and --help succeed, for the program and each command", "[cl
   CHECK(output(folder, "--version").starts_with("noether "));
   const std::string help = output(folder, "--help");
   for (const char* name :
-       {"run", "evaluate", "explain", "list", "describe", "info", "verify", "convert", "plot", "view"}) {
+       {"run", "evaluate", "explain", "list", "describe", "info", "verify", "convert", "frequencies", "plot", "view"}) {
     CHECK(has(help, std::string("\n  ") + name + " "));
     CHECK(has(output(folder, std::string(name) + " --help"), std::string("Usage: noether ") + name + " "));
   }

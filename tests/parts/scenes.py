@@ -421,6 +421,8 @@ MONITORS = {
     "orientation_defect": seen("type = 'orientation_defect'; steps = {cadence}", Case(ROCKS, forces(PULL))),
     "turning_energy": seen("type = 'turning_energy'; steps = {cadence}", Case(ROCKS, forces(PULL))),
     "elements": seen("type = 'elements'; G = 1; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
+    "resonance_angle": seen("type = 'resonance_angle'; bodies = ['inner', 'outer']; p = 1; q = 2; pericenter = 'inner'; "
+                            "G = 1; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
     "closest_approach": seen("type = 'closest_approach'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
     "temperature": seen("type = 'temperature'; steps = {cadence}", salt(LENNARD_JONES)),
     "pressure": seen("type = 'pressure'; steps = {cadence}", salt(LENNARD_JONES)),
