@@ -2,6 +2,7 @@
 
 #include "study/ensemble_lanes.hpp"
 
+#include "numbers/simd.hpp"
 #include "tests/ensemble/support.hpp"
 
 #include <fmt/format.h>
@@ -106,6 +107,25 @@ TEST_CASE("members in lanes are the runs of their scenes to rounding", "[ensembl
   CHECK(of(gravity, "verlet") <= 2e-13);
   CHECK(of(gravity, "srkn14a") <= 2e-13);
   CHECK(of(gravity + "\n" + oblate, "yoshida_4", "compensated = true") <= 2e-13);
+}
+
+TEST_CASE("planets in lanes have the same bits at every SIMD level", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  write_text(
+      folder / "scene.toml",
+      planets("type = \"wisdom_holman\"\n[[hamiltonian.force]]\ntype = \"gr_potential\"\nc = 100", "verlet_aba", 120));
+  const SimdLevel before = simd_level();
+  std::vector<std::vector<io::RowDigest>> digests;
+  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
+    if (!has_simd_level(level)) continue;
+    set_simd_level(level);
+    const EnsembleScene scene(folder / "scene.toml", plan_of(near), {}, true, standard_parts());
+    digests.emplace_back();
+    for (const io::EnsembleRow& row : rows_together(scene, {0, 1, 2, 3, 4, 5, 6, 7}))
+      digests.back().push_back(row.digest);
+  }
+  set_simd_level(before);
+  for (const auto& one : digests) CHECK(one == digests[0]);
 }
 
 TEST_CASE("members that fail in lanes end at the last whole step before, and disturb nobody", "[ensemble][lanes]") {
