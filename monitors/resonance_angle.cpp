@@ -115,6 +115,8 @@ MonitorReport ResonanceAngle::report() const {
   return report;
 }
 
+template void ResonanceAngle::check(const ParticleSystem<double>&) const;
+template void ResonanceAngle::check(const ParticleSystem<Quad>&) const;
 template struct detail::MonitorModel<ResonanceAngle, double>;
 template struct detail::MonitorModel<ResonanceAngle, Quad>;
 
