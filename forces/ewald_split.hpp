@@ -11,7 +11,6 @@
 #include "forces/pair_force.hpp"
 #include "numbers/exact_sum.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -96,9 +95,7 @@ struct ScreenedCharges {
   }
   double range() const { return radius; }
   double scale(double product) const { return 100 * product / (radius * radius); }  // at a tenth of the radius
-  const ChargeSeries& series() const {
-    return screened_series(alpha, radius, precision == PairPrecision::mixed ? std::max(error, 1e-7) : error);
-  }
+  const ChargeSeries& series() const { return screened_series(alpha, radius, error); }
   template <class Real> PairTerms<Real> operator()(const Real& r2, const Real& product) const {
     using std::sqrt, std::atan;
     const Real r = sqrt(r2), inverse = Real(1) / r;

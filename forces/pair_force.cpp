@@ -96,16 +96,23 @@ const std::int32_t* whole_records_with_charges(const ParticleSystem<double>& s, 
   return to;
 }
 
+/// Whether t is r^2 itself.
+bool is_of_r2(const ChargeSeries& series) { return series.scale == 1 && series.offset == 0; }
+
 /// A series for lengths in another unit.
 ChargeSeries in_unit(const ChargeSeries& series, double unit) {
   ChargeSeries other = series;
   const double unit2 = unit * unit;
   other.range2 /= unit2;
-  other.scale *= unit2;
   other.switch_from2 /= unit2;
   other.switch_inverse *= unit2;
   for (double& one : other.energy) one *= unit;
   for (double& one : other.force) one *= unit2 * unit;
+  if (is_of_r2(series)) {
+    other.energy[1] *= unit2;
+  } else {
+    other.scale *= unit2;
+  }
   return other;
 }
 
@@ -195,8 +202,7 @@ void add_charges_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& 
   const double strongest = strongest_product(s), force_unit = limits.strongest / strongest_pair;
   const double energy_unit = force_unit * std::ldexp(1.0, std::ilogb(plan.cutoff) + 1);
   const std::size_t all = sums ? 1 : 0;
-  const bool plain = series.scale == 1 && series.offset == 0;
-  const std::size_t kind = !plain ? 2 : series.switch_inverse != 0 ? 1 : 0;
+  const std::size_t kind = !is_of_r2(series) ? 2 : series.switch_inverse != 0 ? 1 : 0;
   const NeighborSelection* const selection = selection_of(out, s, list, plan.types);
   const ChargedPairKernels& kernels = charged_pair_kernels();
   const auto quick = kernels.quick[kind][all], careful = kernels.careful[kind][all];

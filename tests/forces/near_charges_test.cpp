@@ -63,8 +63,8 @@ TEST_CASE("the near part as a polynomial is erfc of 113 bits, to the error that 
         const PairTerms<Quad> exact = near(Quad(r) * Quad(r), Quad(1));
         const Screened ours = by_series(series, r * r);
         // beside what 1/r and 1/r^3 are rounded by
-        const double energy = std::abs(ours.energy - static_cast<double>(exact.energy)) - 4e-16 / r;
-        const double force = std::abs(ours.force - static_cast<double>(exact.force)) - 6e-16 / (r * r * r);
+        const double energy = std::abs(ours.energy - static_cast<double>(exact.energy)) - 8e-16 / r;
+        const double force = std::abs(ours.force - static_cast<double>(exact.force)) - 12e-16 / (r * r * r);
         worst_energy = std::max(worst_energy, energy / largest.energy);
         worst_force = std::max(worst_force, force / largest.force);
       }
