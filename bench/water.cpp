@@ -4,9 +4,10 @@
 /// for Ewald's sum LAMMPS OPT, where these are installed; a row of `force_error` has that of the start, against Ewald's
 /// sum in 113 bits, root mean square of 64 atoms, in units of C <q^2> (n/V)^(2/3).
 ///
-/// GROMACS has its defaults, a mesh of 0.12 nm and splines of order 4; ours is asked for no larger an error than these
-/// reach (1e-3; LAMMPS's accuracy and OpenMM's tolerance are likewise the widest of round numbers). Packages of GROMACS
-/// choose instructions with care for old processors: its version names them.
+/// GROMACS has its defaults, a mesh of 0.12 nm and splines of order 4; ours is asked for 2e-3, of which
+/// water reaches half, beside 1.1e-3 that these reach on 216 molecules (LAMMPS's accuracy and OpenMM's tolerance are
+/// likewise the widest of round numbers). Packages of GROMACS choose instructions with care for old processors: its
+/// version names them.
 ///
 /// `steps`: on one thread, in processor time; `threads`: on all, by the clock, ours and GROMACS. Both in slices of 50
 /// steps, all in turn; two to settle, then the medians of 7.

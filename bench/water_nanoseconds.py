@@ -11,8 +11,7 @@ trial of less than 0.01, less).
 with hydrogens of 3 u, at 4 fs. The drift is that of the report, from the slope through block means, in kT/ns/atom with its error. Asked: below 1e-3,
 known to 1e-3.
 
-**dielectric**: under a bath of 0.2/ps at 2 fs, by particle mesh Ewald, from the fluctuations of the dipole moment. Beside it: 70.7 (Reddy and Berkowitz 1989,
-SPC/E at 300 K)."""
+**dielectric**: under a bath of 0.2/ps at 2 fs, by particle mesh Ewald, from the fluctuations of the dipole moment."""
 
 import argparse
 import json
