@@ -13,7 +13,7 @@ namespace noether {
 namespace {
 
 constexpr std::size_t most_chaos_points = 4'000;
-constexpr double one_degree = std::numbers::pi / 180;
+constexpr double degree = std::numbers::pi / 180;
 
 /// Numbers of one place of a quantity against time.
 PlotCurve chaos_curve(const io::MonitorSeries& monitor, const PlotTime& time, const std::vector<double>& values,
@@ -66,7 +66,7 @@ std::vector<PlotPanel> plot_resonances(const PlotSource& source) {
     panel.title = resonance_title(source, at);
     panel.x = source.time.axis;
     panel.y = {.label = "angle (deg)", .low = -180, .high = 180};
-    PlotCurve curve = chaos_curve(monitor, source.time, *values, 0, 1, one_degree);
+    PlotCurve curve = chaos_curve(monitor, source.time, *values, 0, 1, degree);
     if (curve.points.empty()) continue;
     // About 180 degrees the angle goes on where it would come back from the other side.
     const auto far = std::count_if(curve.points.begin(), curve.points.end(),

@@ -153,14 +153,14 @@ void ShearedBox<Real>::move(ParticleSystem<Real>& s, const Epicycle<Real>& epicy
     if constexpr (std::is_same_v<Real, double>) {
       if (!epicycle.turns()) {
         const auto edges = edges_of(s.box());
-        const auto move = simd_loop<move_row>();
+        const auto loop = simd_loop<move_row>();
         for (Index first = begin; first < end_of_block; first += in_a_row) {
           const Index count = std::min(in_a_row, end_of_block - first);
           const RowOfParticles row{{x.component(0) + first, x.component(1) + first, x.component(2) + first},
                                    {v.component(0) + first, v.component(1) + first, v.component(2) + first},
                                    {image.component(0) + first, image.component(1) + first, image.component(2) + first},
                                    count};
-          if (!move(epicycle, edges, slope, row)) one_by_one(first, first + count);
+          if (!loop(epicycle, edges, slope, row)) one_by_one(first, first + count);
         }
         return;
       }

@@ -28,7 +28,7 @@ namespace {
 /// The state is looked at for finite values at least this often, as in any run.
 constexpr std::int64_t longest_cut = 1024;
 /// Above, the lanes are better filled with particles.
-constexpr Index most_particles = 64;
+constexpr Index most_in_lanes = 64;
 constexpr std::size_t member_lanes = SystemLanes::lanes;
 
 /// Arcs about a primary and kicks, split in coordinates and by nothing else.
@@ -432,9 +432,9 @@ std::string why_alone(const Scene& scene) {
   if (s.box().is_periodic()) return "a periodic box has no lanes";
   if (s.topology() != nullptr || !s.columns().empty())
     return "particles with bonds or columns of their own have no lanes";
-  if (s.size() > most_particles) {
+  if (s.size() > most_in_lanes) {
     return fmt::format("{} particles are more than {}, so that lanes are filled with particles", s.size(),
-                       most_particles);
+                       most_in_lanes);
   }
   const std::string of_hamiltonian = why_alone_by_hamiltonian(scene);
   return of_hamiltonian.empty() ? why_alone_by_monitors(scene) : of_hamiltonian;

@@ -14,7 +14,7 @@ namespace noether {
 
 namespace {
 
-constexpr Index most_particles = 64;
+constexpr Index most_with_modes = 64;
 
 /// M^-1/2 U'' M^-1/2 of some forces, shape (3 n, 3 n).
 Matrix<double> hessian_of(const ForceField<double>& forces, const ParticleSystem<double>& s, double t) {
@@ -40,7 +40,7 @@ std::map<char, double> kick_shares(const Scene& scene) {
   const SceneHamiltonian& hamiltonian = scene.hamiltonian;
   const bool plain = hamiltonian.splitting.only_forces && hamiltonian.splitting.own.empty() &&
                      hamiltonian.constraints.empty() && !hamiltonian.rotating;
-  if (!plain || scene.particles.size() == 0 || scene.particles.size() > most_particles) return {};
+  if (!plain || scene.particles.size() == 0 || scene.particles.size() > most_with_modes) return {};
   std::map<char, ForceField<double>> fields;
   for (const SceneForce& force : hamiltonian.forces) {
     const std::string kicks = force.force.claims().kicks;

@@ -209,8 +209,8 @@ VariedKeys::VariedKeys(const SceneValue& scene, const std::vector<Variation>& va
         double number = 0;
         const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), number);
         if (error != std::errc()) refuse(*value);
-        const auto rest = static_cast<std::size_t>(end - text->data());
-        if (key.unit.empty()) key.unit = trimmed(std::string_view(*text).substr(rest));
+        const auto digits = static_cast<std::size_t>(end - text->data());
+        if (key.unit.empty()) key.unit = trimmed(std::string_view(*text).substr(digits));
       }
     }
     keys_.push_back(std::move(key));
