@@ -121,11 +121,11 @@ TEST_CASE("a column exists only if a part has asked for it", "[particles]") {
   CHECK_THROWS_WITH(s.column<Charge>(), "the particles have no column 'charge'");
   s.add_column<Charge>()[1] = -1;
   s.add_column<Kind>()[2] = 7;
-  s.add_column<Spin>().set(0, {0, 0, 1});
+  s.add_column<SpinVector>().set(0, {0, 0, 1});
   CHECK(s.has<Charge>());
   CHECK(s.column<Charge>()[1] == -1);
   CHECK(s.column<Kind>()[2] == 7);
-  CHECK(std::as_const(s.column<Spin>())[0] == Vec3<double>(0, 0, 1));
+  CHECK(std::as_const(s.column<SpinVector>())[0] == Vec3<double>(0, 0, 1));
   CHECK(s.bytes_per_particle() == bare + sizeof(double) + sizeof(std::int64_t) + 3 * sizeof(double));
   CHECK(s.columns().size() == 3);
 }

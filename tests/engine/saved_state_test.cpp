@@ -120,12 +120,12 @@ TEST_CASE("columns that parts have asked for come back with the particles", "[sa
   auto s = test::outer_planets<Quad>();
   s.add_column<Charge>()[1] = third;
   s.add_column<Kind>()[2] = std::int64_t{1} << 60;
-  s.add_column<Spin>().set(0, vector);
+  s.add_column<SpinVector>().set(0, vector);
   const auto again = load_particles<Quad>(save_particles(s));
   CHECK(again.columns().size() == 3);
   CHECK(again.column<Charge>()[1] == third);
   CHECK(again.column<Kind>()[2] == std::int64_t{1} << 60);
-  CHECK((again.column<Spin>()[0] == vector));
+  CHECK((again.column<SpinVector>()[0] == vector));
 }
 
 TEST_CASE("particles of which an array is cut or gone are refused", "[saved]") {

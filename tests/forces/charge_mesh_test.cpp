@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <random>
 #include <tuple>
 #include <vector>
@@ -19,14 +20,13 @@ namespace {
 using Complex = std::complex<double>;
 using Size = std::array<std::int64_t, 3>;
 
-constexpr double pi = 3.141592653589793;
-
 /// Fourier sums along one axis of an array of shape `size`, term by term.
 std::vector<Complex> summed_along(int axis, double sign, const Size& size, const std::vector<Complex>& from) {
   const std::int64_t n = size[static_cast<std::size_t>(axis)];
   const std::int64_t stride = axis == 0 ? size[1] * size[2] : axis == 1 ? size[2] : 1;
   std::vector<Complex> turns;
-  for (std::int64_t m = 0; m < n; ++m) turns.push_back(std::polar(1.0, sign * 2 * pi * double(m) / double(n)));
+  for (std::int64_t m = 0; m < n; ++m)
+    turns.push_back(std::polar(1.0, sign * 2 * std::numbers::pi * double(m) / double(n)));
   std::vector<Complex> to(from.size());
   for (std::size_t at = 0; at < from.size(); ++at) {
     const std::int64_t k = static_cast<std::int64_t>(at) / stride % n;
@@ -85,12 +85,13 @@ Waves by_definition(const ParticleSystem<double>& s, const detail::MeshLayout& l
     double b = 1;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int64_t folded = 2 * m[k] > layout.points[k] ? m[k] - layout.points[k] : m[k];
-      wave[static_cast<Index>(k)] = 2 * pi * double(folded) / edges[static_cast<Index>(k)];
+      wave[static_cast<Index>(k)] = 2 * std::numbers::pi * double(folded) / edges[static_cast<Index>(k)];
       odd[static_cast<Index>(k)] = 2 * m[k] == layout.points[k] ? 0 : wave[static_cast<Index>(k)];
       b *= factors[k][static_cast<std::size_t>(m[k])];
     }
     const double k2 = wave.squaredNorm(), volume = edges[0] * edges[1] * edges[2];
-    const double D = k2 == 0 ? 0 : 4 * pi * b * std::exp(-k2 / (4 * layout.alpha * layout.alpha)) / (k2 * volume);
+    const double D =
+        k2 == 0 ? 0 : 4 * std::numbers::pi * b * std::exp(-k2 / (4 * layout.alpha * layout.alpha)) / (k2 * volume);
     const double energy = D * std::norm(mesh[at]) / 2;
     all.energy += energy;
     if (k2 > 0) {

@@ -9,6 +9,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/problems.hpp"
+#include "tests/support/sheets.hpp"
 
 #include <cmath>
 #include <string>
@@ -19,10 +20,6 @@ namespace noether {
 namespace {
 
 const Vec3<double> edges(3, 2, 8);
-
-template <class Real, class... Fs> AnyHamiltonian<Real> sheet(const ShearingSheetOptions& options, Fs... forces) {
-  return options.split<Real>(test::field_of<Real>(std::move(forces)...));
-}
 
 /// Stones of several masses, a tracer among them, no two of them half an edge apart; all numbers have few digits, so
 /// that w is exact wherever they stand.
@@ -61,8 +58,8 @@ TEST_CASE("a free particle in a sheared box is where its epicycle is", "[integra
       ParticleSystem<double> boxed = open;
       boxed.set_box(Box::periodic(edges));
       const int steps = 800;
-      const auto exact = test::run(sheet<Quad>(frame), *scheme, open.as<Quad>(), h, steps);
-      const auto found = test::run(sheet<double>(frame), *scheme, boxed, h, steps);
+      const auto exact = test::run(test::sheet<Quad>(frame), *scheme, open.as<Quad>(), h, steps);
+      const auto found = test::run(test::sheet<double>(frame), *scheme, boxed, h, steps);
       int crossings = 0;
       for (Index i = 0; i < found.size(); ++i) {
         const Vec3<double> x = found.unwrapped(i), v = found.velocities()[i], in_cell = found.positions()[i];
@@ -89,7 +86,7 @@ TEST_CASE("gravity in a sheared box is that of nine images", "[integrators][shea
   for (const double time : {0.0, 0.7, 250.3}) {
     auto s = stones();
     s.clock() = Clock<double>::fixed(time, 0.1);
-    auto hamiltonian = sheet<double>(frame, gravity);
+    auto hamiltonian = test::sheet<double>(frame, gravity);
     hamiltonian.bind(s);
     VectorColumn<double> a(s.size());
     hamiltonian.accelerations(s, a);
@@ -137,10 +134,10 @@ TEST_CASE("where a sheared box is cut does not change a bit", "[integrators][she
   // The same stones, some of them given by their images: in x with the velocity of the image, in y.
   const Gravity gravity{.G = 1, .softening = 0.01};
   for (const Scheme* scheme : {&schemes::verlet, &schemes::yoshida_4}) {
-    const auto whole = test::run(sheet<double>({}, gravity), *scheme, stones(), 0.0625, 400);
+    const auto whole = test::run(test::sheet<double>({}, gravity), *scheme, stones(), 0.0625, 400);
     int moved = 0;
     for (const double cut : {1.0, 2.5}) {
-      const auto other = test::run(sheet<double>({}, gravity), *scheme, stones(cut), 0.0625, 400);
+      const auto other = test::run(test::sheet<double>({}, gravity), *scheme, stones(cut), 0.0625, 400);
       CHECK((whole.positions().all() == other.positions().all()));
       for (Index i = 0; i < whole.size(); ++i) {
         const Vec3<double> v = whole.velocities()[i], w = other.velocities()[i];
@@ -163,7 +160,7 @@ TEST_CASE("schemes keep their order in a sheared box", "[integrators][shearing_s
   s.add("b", 0.25, {4.25, 4.5, 0}, {0, -0.796875, 0.125});
   s.add("c", 0.25, {4, 3.25, -0.125}, {-0.25, -0.75, 0});
   const auto end = [&](const Scheme& scheme, int steps) {
-    return test::run(sheet<Quad>({.Omega = 0.125}, Gravity{.G = 1, .softening = 0.25}), scheme, s.as<Quad>(),
+    return test::run(test::sheet<Quad>({.Omega = 0.125}, Gravity{.G = 1, .softening = 0.25}), scheme, s.as<Quad>(),
                      1.5 / steps, steps);
   };
   const auto exact = end(schemes::sofroniou_spaletta_10_s35, 128);
@@ -176,15 +173,16 @@ TEST_CASE("schemes keep their order in a sheared box", "[integrators][shearing_s
   CHECK(std::abs(order(*schemes::find("yoshida_6"), 64) - 6) <= 0.15);
   CHECK(std::abs(order(*schemes::find("blanes_moan_s10"), 64) - 6) <= 0.15);
   // Doubles follow: positions on the grid of the box, velocities rounded.
-  const auto in_doubles =
-      test::run(sheet<double>({.Omega = 0.125}, Gravity{.G = 1, .softening = 0.25}), schemes::verlet, s, 1.5 / 96, 96);
+  const auto in_doubles = test::run(test::sheet<double>({.Omega = 0.125}, Gravity{.G = 1, .softening = 0.25}),
+                                    schemes::verlet, s, 1.5 / 96, 96);
   CHECK(test::distance(in_doubles.as<Quad>(), end(schemes::verlet, 96)) <= 1e-13);
 }
 
 TEST_CASE("in a sheared box: threads, cadences, and a save in between", "[integrators][shearing_sheet]") {
   const auto start = [] {
-    return Simulation<double>(
-        stones(0, 700), compose(sheet<double>({}, Gravity{.G = 1, .softening = 0.02}), schemes::verlet_aba), 0.0625);
+    return Simulation<double>(stones(0, 700),
+                              compose(test::sheet<double>({}, Gravity{.G = 1, .softening = 0.02}), schemes::verlet_aba),
+                              0.0625);
   };
   const int before = thread_count();
   set_thread_count(1);
@@ -210,15 +208,15 @@ TEST_CASE("in a sheared box: threads, cadences, and a save in between", "[integr
 
 TEST_CASE("what a sheared box does not know is refused", "[integrators][shearing_sheet]") {
   auto s = stones();
-  auto spring = sheet<double>({}, HarmonicField{.k = 1});
+  auto spring = test::sheet<double>({}, HarmonicField{.k = 1});
   CHECK_THROWS_WITH(spring.bind(s),
                     "in the box of a shearing sheet images slide, which gravity alone knows of the forces; take the "
                     "others out, or the box");
-  auto both = sheet<double>({}, Gravity{}, HarmonicField{.k = 1});
+  auto both = test::sheet<double>({}, Gravity{}, HarmonicField{.k = 1});
   CHECK_THROWS_WITH(both.bind(s),
                     "in the box of a shearing sheet images slide, which gravity alone knows of the forces; take the "
                     "others out, or the box");
-  auto dragged = test::damped(sheet<double>({}), LinearDrag{.rate = 0.1});
+  auto dragged = test::damped(test::sheet<double>({}), LinearDrag{.rate = 0.1});
   CHECK_THROWS_WITH(test::run(dragged, schemes::verlet, s, 0.1, 1),
                     "in the box of a shearing sheet there are no letters beside A and B; take drag and baths out");
 }

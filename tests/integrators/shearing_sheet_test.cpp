@@ -12,6 +12,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/problems.hpp"
+#include "tests/support/sheets.hpp"
 
 #include <array>
 #include <cmath>
@@ -23,10 +24,6 @@ namespace noether {
 namespace {
 
 using Start = std::array<double, 6>;
-
-template <class Real, class... Fs> AnyHamiltonian<Real> sheet(const ShearingSheetOptions& options, Fs... forces) {
-  return options.split<Real>(test::field_of<Real>(std::move(forces)...));
-}
 
 ParticleSystem<double> one(const Start& at) {
   ParticleSystem<double> s(unit_system("reduced"));
@@ -66,7 +63,7 @@ const std::array<Orbit, 2> orbits = {
        -0.02844435835024972101_q, 0.01929248854333313284_q}}}};
 
 template <class Real> ParticleSystem<Real> after(const Orbit& orbit, int steps) {
-  Simulation<Real> sim(one(orbit.start).as<Real>(), compose(sheet<Real>(orbit.options), schemes::verlet_aba),
+  Simulation<Real> sim(one(orbit.start).as<Real>(), compose(test::sheet<Real>(orbit.options), schemes::verlet_aba),
                        Clock<Real>::fixed(0, orbit.time / steps));
   REQUIRE(sim.run(steps).ok());
   return sim.particles();
@@ -95,9 +92,9 @@ TEST_CASE("an epicycle neither grows nor fades, and keeps its phase", "[integrat
   const int steps = 1'000'000;
   const double h = 1.0009765625;
   const Start start = {1, 0, 0.5, 0.25, -1.25, 0.125};
-  Simulation<double> sim(one(start), compose(sheet<double>({}), schemes::verlet_aba), h);
+  Simulation<double> sim(one(start), compose(test::sheet<double>({}), schemes::verlet_aba), h);
   REQUIRE(sim.run(steps).ok());
-  Simulation<Quad> exact(one(start).as<Quad>(), compose(sheet<Quad>({}), schemes::verlet_aba),
+  Simulation<Quad> exact(one(start).as<Quad>(), compose(test::sheet<Quad>({}), schemes::verlet_aba),
                          Clock<Quad>::fixed(0, steps * h));
   REQUIRE(exact.run(1).ok());
   const auto s = sim.particles();
@@ -129,7 +126,7 @@ TEST_CASE("a Hill encounter by the symplectic epicycle", "[integrators][shearing
     ParticleSystem<double> s(unit_system("reduced"));
     s.add("one", 0.25, {-1.875, -9, 0}, {0, 2.8125, 0});
     s.add("other", 0.75, {0.625, 3, 0}, {0, -0.9375, 0});
-    Simulation<double> sim(std::move(s), compose(sheet<double>({}, Gravity{}), scheme), h);
+    Simulation<double> sim(std::move(s), compose(test::sheet<double>({}, Gravity{}), scheme), h);
     Figures figures;
     const double reduced = 0.1875;
     // Of the relative motion; that of the centre of mass is an epicycle of its own, here at rest.
@@ -158,7 +155,7 @@ TEST_CASE("the error of an encounter is proportional to the masses", "[integrato
     s.add("stone", 0, {2.5, 12, 0}, {0, -3.75, 0});
     const auto end = [&](const Scheme& by, double step) {
       const auto wide = s.as<Quad>();
-      const auto after = test::run(sheet<Quad>({}, Gravity{}), by, wide, step, std::lround(6 / step));
+      const auto after = test::run(test::sheet<Quad>({}, Gravity{}), by, wide, step, std::lround(6 / step));
       return Vec3<Quad>(after.positions()[1]);
     };
     const Vec3<Quad> off = end(scheme, h) - end(schemes::aba_10_6_4, 0.0625);
@@ -172,7 +169,7 @@ TEST_CASE("the error of an encounter is proportional to the masses", "[integrato
 TEST_CASE("a sheet has the action of its flows, in p = m (v_x, v_y + 2 Omega x, v_z)",
           "[integrators][shearing_sheet]") {
   // dS = p1 dq1 - p0 dq0 over all directions of phase space, by central differences of order 2: their error is 1e-20.
-  auto hamiltonian = sheet<Quad>({.Omega = 0.7, .Omega_z = 1.3}, Gravity{.softening = 0.3});
+  auto hamiltonian = test::sheet<Quad>({.Omega = 0.7, .Omega_z = 1.3}, Gravity{.softening = 0.3});
   auto s = test::planets(0.5, 2).as<Quad>();
   hamiltonian.bind(s);
   const auto momenta = [](const ParticleSystem<Quad>& of, Index i) {
@@ -218,7 +215,7 @@ TEST_CASE("the shadow Hamiltonian of a sheet is flatter than its energy", "[inte
   // The orders of the formula itself: half the step, 2^-4 and 2^-8 of the fluctuation.
   const auto shadow = [](double h) {
     auto s = test::planets(0.2, 2);
-    Simulation<Quad> sim(s.as<Quad>(), compose(sheet<Quad>({}, Gravity{.softening = 0.5}), schemes::verlet_aba),
+    Simulation<Quad> sim(s.as<Quad>(), compose(test::sheet<Quad>({}, Gravity{.softening = 0.5}), schemes::verlet_aba),
                          Clock<Quad>::fixed(0, h));
     auto& watched = sim.every(1, ShadowHamiltonian<Quad>({4, 8}));
     REQUIRE(sim.run(std::lround(4 / h)).ok());
@@ -232,9 +229,9 @@ TEST_CASE("the shadow Hamiltonian of a sheet is flatter than its energy", "[inte
 
 TEST_CASE("a sheet with compensated sums, in lanes and over dual numbers", "[integrators][shearing_sheet]") {
   const Orbit& orbit = orbits[0];
-  Simulation<double> plain(one(orbit.start), compose(sheet<double>(orbit.options), schemes::verlet_aba), 0.01);
+  Simulation<double> plain(one(orbit.start), compose(test::sheet<double>(orbit.options), schemes::verlet_aba), 0.01);
   Simulation<double> compensated(
-      one(orbit.start), compose(sheet<double>(orbit.options), schemes::verlet_aba, {.compensated = true}), 0.01);
+      one(orbit.start), compose(test::sheet<double>(orbit.options), schemes::verlet_aba, {.compensated = true}), 0.01);
   REQUIRE(plain.run(10'000).ok());
   REQUIRE(compensated.run(10'000).ok());
   CHECK(distance(compensated.particles(), orbit.end) <= 1e-13);
@@ -272,10 +269,11 @@ TEST_CASE("methods that do not split know the same sheet", "[integrators][sheari
   const auto& [frame] = options.forces();
   auto gauss = test::classical_over(test::field_of(frame, Gravity{}), method("gauss_8", {.adaptive = false}));
   const auto by_gauss = test::run(gauss, s, 0.01, 300);
-  const auto by_scheme = test::run(sheet<double>(options, Gravity{}), schemes::sofroniou_spaletta_10_s35, s, 0.01, 300);
+  const auto by_scheme =
+      test::run(test::sheet<double>(options, Gravity{}), schemes::sofroniou_spaletta_10_s35, s, 0.01, 300);
   CHECK(test::distance(by_gauss, by_scheme) <= 1e-12);
   // The same energy, and the same accelerations.
-  auto hamiltonian = sheet<double>(options, Gravity{});
+  auto hamiltonian = test::sheet<double>(options, Gravity{});
   hamiltonian.bind(s);
   CHECK(std::abs(hamiltonian.energy(s).total() - gauss.energy(s).total()) <= 1e-15);
   VectorColumn<double> a(s.size()), b(s.size());
@@ -311,7 +309,7 @@ TEST_CASE("many steps at a time of free particles have the bits of each step alo
   }
   for (const Scheme* scheme : {&schemes::verlet, &schemes::verlet_aba, &schemes::yoshida_6}) {
     for (const double h : {0.05, 2.0}) {  // of the second some are beyond half a turn
-      const auto hamiltonian = sheet<double>({.Omega = 1.1, .Omega_z = 1.7});
+      const auto hamiltonian = test::sheet<double>({.Omega = 1.1, .Omega_z = 1.7});
       Composition<AnyHamiltonian<double>> stepped(hamiltonian, *scheme);
       ParticleSystem<double> alone = s, together = s;
       alone.clock() = together.clock() = Clock<double>::fixed(0, h);
@@ -337,7 +335,7 @@ TEST_CASE("threads do not change a sheet of many particles", "[integrators][shea
   const auto end = [&](int threads) {
     const int before = thread_count();
     set_thread_count(threads);
-    auto state = test::run(sheet<double>({}, Gravity{.softening = 0.01}), schemes::verlet_aba, s, 0.05, 5);
+    auto state = test::run(test::sheet<double>({}, Gravity{.softening = 0.01}), schemes::verlet_aba, s, 0.05, 5);
     set_thread_count(before);
     return state;
   };

@@ -14,7 +14,7 @@ struct Kind {
   static constexpr ColumnRole role = ColumnRole::parameter;
   template <class Real> using type = ScalarColumn<std::int64_t>;
 };
-struct Spin {
+struct SpinVector {
   static constexpr std::string_view name = "spin", dimension = "mass length^2/time";
   static constexpr ColumnRole role = ColumnRole::momentum;
   template <class Real> using type = VectorColumn<Real>;
