@@ -14,7 +14,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-const std::vector<FrequencyTerm> known = {{1.0, 1.0, 0.3}, {-0.77, 0.4, -2.0}, {2.31, 0.1, 1.0}, {0.123, 0.01, 2.5}};
+const std::vector<FrequencyTerm> known_terms = {
+    {1.0, 1.0, 0.3}, {-0.77, 0.4, -2.0}, {2.31, 0.1, 1.0}, {0.123, 0.01, 2.5}};
 
 std::vector<Complex> signal_of(const std::vector<FrequencyTerm>& terms, double start, double dt, std::size_t count) {
   std::vector<Complex> values(count);
@@ -33,7 +34,7 @@ double error_of_first(double length, int window, int sweeps) {
     const double dt = 0.25;
     const auto count = static_cast<std::size_t>(length * factor / dt);
     const auto found =
-        frequency_terms(signal_of(known, 0, dt, count), 0, dt, {.terms = 4, .window = window, .sweeps = sweeps});
+        frequency_terms(signal_of(known_terms, 0, dt, count), 0, dt, {.terms = 4, .window = window, .sweeps = sweeps});
     worst = std::max(worst, std::abs(found.at(0).frequency - 1.0));
   }
   return worst;
@@ -43,13 +44,13 @@ double error_of_first(double length, int window, int sweeps) {
 
 TEST_CASE("frequencies, amplitudes and phases of a known sum come back", "[frequencies]") {
   const double start = 37, dt = 0.25;
-  const auto found = frequency_terms(signal_of(known, start, dt, 4001), start, dt, {.terms = 4, .sweeps = 3});
+  const auto found = frequency_terms(signal_of(known_terms, start, dt, 4001), start, dt, {.terms = 4, .sweeps = 3});
   REQUIRE(found.size() == 4);
   for (std::size_t k = 0; k < 4; ++k) {
     INFO("term " << k);
-    CHECK(std::abs(found[k].frequency - known[k].frequency) < 1e-11);
-    CHECK(std::abs(found[k].amplitude - known[k].amplitude) < 1e-9);
-    CHECK(std::abs(std::remainder(found[k].phase - known[k].phase, 2 * std::numbers::pi)) < 1e-8);
+    CHECK(std::abs(found[k].frequency - known_terms[k].frequency) < 1e-11);
+    CHECK(std::abs(found[k].amplitude - known_terms[k].amplitude) < 1e-9);
+    CHECK(std::abs(std::remainder(found[k].phase - known_terms[k].phase, 2 * std::numbers::pi)) < 1e-8);
   }
 }
 
