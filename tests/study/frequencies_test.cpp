@@ -67,7 +67,7 @@ TEST_CASE("a frequency found alone is off by T^-(2p+2)", "[frequencies]") {
 
 TEST_CASE("a frequency that drifts shows in the two halves of a signal", "[frequencies]") {
   const double dt = 0.25;
-  const auto steady = frequency_changes(signal_of(known, 0, dt, 8000), 0, dt, {.terms = 2});
+  const auto steady = frequency_changes(signal_of(known_terms, 0, dt, 8000), 0, dt, {.terms = 2});
   REQUIRE(steady.size() == 2);
   CHECK(steady[0].diffusion() < -9);
   std::vector<Complex> drifting(8000);
