@@ -16,7 +16,7 @@ namespace {
 /// Changes of a run get random numbers that nothing else takes.
 constexpr std::uint32_t change_stream = 16;
 /// Beyond these a length is brought back to 1 within a stretch of steps.
-constexpr double longest = 1e100, shortest = 1e-100;
+constexpr double too_long = 1e100, too_short = 1e-100;
 /// Steps between two times that several changes are made orthogonal, or that a single one is looked at.
 constexpr std::int64_t stride_of_many = 8, stride_of_one = 64;
 
@@ -119,7 +119,7 @@ void NearbyOrbits<Real>::follow(const Snapshot<Real>& now, std::int64_t stride, 
     step_ += steps;
     std::vector<Real> lengths{length(0)}, growth;
     const bool last = step_ == now.step();
-    const bool again = last || count_ > 1 || !(lengths[0] < Real(longest) && lengths[0] > Real(shortest));
+    const bool again = last || count_ > 1 || !(lengths[0] < Real(too_long) && lengths[0] > Real(too_short));
     const std::vector<Real> before = lengths_;
     if (again) lengths = orthonormalize();
     for (std::size_t k = 0; k < before.size(); ++k) growth.push_back(log(lengths[k] / before[k]));

@@ -18,7 +18,7 @@ namespace noether {
 namespace {
 
 constexpr double margin = 0.7;                   ///< of the error that was asked for: fits scatter
-constexpr double rounding = 1e-14;               ///< no fit is believed below
+constexpr double least_fit = 1e-14;              ///< no fit is believed below
 constexpr double rounding_of_two_words = 1e-19;  ///< the same of states with more digits than doubles
 /// Where errors are asked for that doubles may not reach, methods with more digits are tried too.
 constexpr double beyond_doubles = 1e-11;
@@ -63,7 +63,7 @@ double two_digits(double x) {
 class Fit {
  public:
   Fit(const Scene& scene, const Comparison& trials, const Candidate& who, Metric metric)
-      : who_(who), rounding_(who.below_rounding ? rounding_of_two_words : rounding) {
+      : who_(who), rounding_(who.below_rounding ? rounding_of_two_words : least_fit) {
     for (const Row& row : trials.rows) {
       if (row.who == who && error_of(row, metric)) rows_.push_back(&row);
     }
@@ -93,7 +93,7 @@ class Fit {
     if (!law_) return {};
     const double wanted = margin * error / longer(trial_end, end);
     if (wanted < rounding_) return {};
-    if (chaos_ != nullptr && chaos_->rounding(end) * (rounding_ / rounding) > margin * error) return {};
+    if (chaos_ != nullptr && chaos_->rounding(end) * (rounding_ / least_fit) > margin * error) return {};
     double x = std::exp((std::log(wanted) - law_->log_factor) / law_->exponent);
     double most = 0, least = std::numeric_limits<double>::infinity();
     for (const Row* row : rows_) {
@@ -259,7 +259,7 @@ bool tries_two_words(const Scene& scene, const AdviseOptions& options) {
 
 /// One rounding of the finest states that are tried.
 double finest_rounding(const Scene& scene, const AdviseOptions& options) {
-  return one_rounding * (tries_two_words(scene, options) ? rounding_of_two_words / rounding : 1);
+  return one_rounding * (tries_two_words(scene, options) ? rounding_of_two_words / least_fit : 1);
 }
 
 /// Takes the metric that was asked for, or the one that can be held over the whole run.
@@ -348,7 +348,7 @@ std::string reason_of(const Advice& advice, const AdviseOptions& options, bool t
   if (!advice.left_out.empty()) return advice.left_out.front();
   if (!tells) {
     const bool vague =
-        advice.metric == Metric::position && c.truth.error.value_or(0) > std::min(10 * rounding, 0.1 * options.error);
+        advice.metric == Metric::position && c.truth.error.value_or(0) > std::min(10 * least_fit, 0.1 * options.error);
     return "the trials do not tell how errors depend on the step; " +
            (vague ? fmt::format("the solution that they are measured against, {}, is known to {:.1e} only",
                                 c.truth.name, *c.truth.error)

@@ -46,8 +46,6 @@ int main() {
   VectorColumn<double> a(salt.size());
   ForceSink<double> lattice(a, salt, {.energy = true});
   charges.add_to(lattice, salt);
-  fmt::print("charges: {:.6f} kJ/mol for each pair of ions, by Madelung's constant {:.6f}\n",
-             lattice.potential() / 256 / kJ_per_mol, -madelung * coulomb_constant / (constant / 2) / kJ_per_mol);
 
   Simulation sim(std::move(salt), compose(KineticPotential(forces), schemes::verlet), 2 * fs);
   auto& energy = sim.every(10, Energy{});
@@ -60,6 +58,8 @@ int main() {
   const auto peak = std::max_element(g.begin(), g.end());
   fmt::print("{}: temperature {:.1f} K on the average, worst relative energy error {:.1e}\n", outcome,
              *temperature.report().rms, energy.worst());
+  fmt::print("charges: {:.6f} kJ/mol for each pair of ions, by Madelung's constant {:.6f}\n",
+             lattice.potential() / 256 / kJ_per_mol, -madelung * coulomb_constant / (constant / 2) / kJ_per_mol);
   fmt::print("Na+ and Cl- are {:.3f} nm apart most often, g = {:.1f}\n", neighbors.distance(peak - g.begin()), *peak);
   fmt::print("{}\n", io::digest(sim.particles()));
   return exit_code(outcome);

@@ -20,8 +20,8 @@ const std::vector<Wrong> wrong_lines = {
     {"", 2, "no command is given; see `noether --help`"},
     {"rnu scene.toml", 2, "unknown command 'rnu'; did you mean 'run'?"},
     {"integrate scene.toml", 2,
-     "unknown command 'integrate'; expected one of: run, evaluate, explain, compare, advise, stability, list, "
-     "describe, info, verify, convert, plot, view, help, version"},
+     "unknown command 'integrate'; expected one of: run, evaluate, explain, compare, advise, stability, ensemble, "
+     "merge, list, describe, info, verify, convert, frequencies, plot, view, help, version"},
     {"build", 2, "'build' is a command of the launcher in a checkout: ./noether build"},
     {"test forces", 2, "'test' is a command of the launcher in a checkout: ./noether test"},
     {"help rnu", 2, "there is no command 'rnu'; did you mean 'run'?", false},

@@ -247,7 +247,7 @@ std::vector<Twin> sheet_twins() {
                    .hamiltonian = "[hamiltonian]\ntype='shearing_sheet'\nOmega=0.7\nOmega_z=1.1\n"
                                   "[[hamiltonian.force]]\ntype='gravity'\nG=1\nsoftening=0.05\n",
                    .method = "yoshida_4",
-                   .place = "box=[1.5,2,8]\n"});
+                   .place = "[particles]\nbox=[1.5,2,8]\n"});
   return twins;
 }
 
