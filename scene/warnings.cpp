@@ -20,7 +20,14 @@ namespace noether {
 
 namespace {
 
+/// Whether a particle or a site of a body has one.
 bool has_charges(const ParticleSystem<double>& s) {
+  if (const Bodies* bodies = s.bodies()) {
+    for (const BodyKind& kind : bodies->kinds) {
+      if (std::any_of(kind.sites.begin(), kind.sites.end(), [](const BodySite& site) { return site.charge != 0; }))
+        return true;
+    }
+  }
   if (!s.has<Charge>()) return false;
   const auto& q = s.column<Charge>();
   for (Index i = 0; i < s.size(); ++i) {
