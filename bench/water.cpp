@@ -1,8 +1,8 @@
 /// Rigid SPC/E water, 7754 molecules (23 262 atoms) at 0.997 g/cm^3 and 300 K: whole steps of 2 fs, cutoff 0.9 nm, with
 /// a list that is made anew when somebody has moved too far. Charges in a reaction field, or by particle mesh Ewald, in
-/// doubles. Beside them, from the same start, GROMACS in double and mixed precision, the CPU platform of OpenMM, and
-/// for Ewald's sum LAMMPS OPT, where these are installed; a row of `force_error` has that of the start, against Ewald's
-/// sum in 113 bits, root mean square of 64 atoms, in units of C <q^2> (n/V)^(2/3).
+/// double and mixed precision. Beside them, from the same start, GROMACS in double and mixed precision, the CPU
+/// platform of OpenMM, and for Ewald's sum LAMMPS OPT, where these are installed; a row of `force_error` has that of
+/// the start, against Ewald's sum in 113 bits, root mean square of 64 atoms, in units of C <q^2> (n/V)^(2/3).
 ///
 /// GROMACS has its defaults, a mesh of 0.12 nm and splines of order 4; ours is asked for 2e-3, of which
 /// water reaches half, beside 1.1e-3 that these reach on 216 molecules (LAMMPS's accuracy and OpenMM's tolerance are
@@ -49,14 +49,22 @@ const LennardJonesForce oxygens{.cutoff = cutoff, .cutoff_style = Cutoff::shifte
 /// What acts beside constraints.
 struct Charges {
   std::string name, of_peers;  ///< ours, and what scripts of bench/peers call the kind
-  ForceField<double> forces;
+  ForceField<double> forces, mixed;
 };
 
-template <class F> Charges charges(std::string name, std::string of_peers, const F& force) {
+/// A force between oxygens and one between charges, in one precision.
+template <class F> ForceField<double> in_precision(PairPrecision precision, F charges) {
+  LennardJonesForce pairs = oxygens;
+  pairs.precision = charges.precision = precision;
   ForceField<double> forces;
-  forces.add(oxygens);
-  forces.add(force);
-  return {std::move(name), std::move(of_peers), std::move(forces)};
+  forces.add(pairs);
+  forces.add(charges);
+  return forces;
+}
+
+template <class F> Charges charges(std::string name, std::string of_peers, const F& force) {
+  return {std::move(name), std::move(of_peers), in_precision(PairPrecision::full, force),
+          in_precision(PairPrecision::mixed, force)};
 }
 
 const ParticleMeshEwald mesh{.cutoff = cutoff, .relative_error = 2e-3};
@@ -169,8 +177,11 @@ void add_peer(const bench::Rows& rows, std::vector<bench::Melt>& peers, const st
 void measure(const bench::Rows& rows, const ParticleSystem<double>& water, const Told& told, int threads) {
   for (const Charges& kind : all_charges()) {
     std::vector<bench::Melt> ours, peers;
-    ours.push_back(
-        bench::melt(kind.name, water, KineticPotential(kind.forces, rigid_molecules(water)), schemes::verlet, step));
+    const auto add_ours = [&](const std::string& name, const ForceField<double>& forces) {
+      ours.push_back(bench::melt(name, water, KineticPotential(forces, rigid_molecules(water)), schemes::verlet, step));
+    };
+    add_ours(kind.name, kind.forces);
+    add_ours(kind.name + "_mixed", kind.mixed);
     const auto add = [&](const std::string& name, const std::string& script) {
       add_peer(rows, peers, name, script, told, water.size());
     };
@@ -182,7 +193,7 @@ void measure(const bench::Rows& rows, const ParticleSystem<double>& water, const
       if (kind.of_peers == "pme") add("lammps_opt", fmt::format("lammps_water.py pppm '{}'", told.start()));
     }
     bench::take_turns(ours, peers, 50);
-    bench::add_rate(rows, ours[0], peers);
+    for (const bench::Melt& one : ours) bench::add_rate(rows, one, peers);
     if (threads == 1) continue;
     rows.add(kind.name, "times_as_quick", bench::times_as_quick(threads, [&] { return ours[0].seconds(50); }), "1",
              water.size());
@@ -197,8 +208,11 @@ int main(int count, char** arguments) {
   const int threads = thread_count();
   const ParticleSystem<double> water = warm_water();
   const Told told(water);
-  if (const auto accuracy = lattice_accuracy(mesh, water))
-    add_error(rows, "particle_mesh_ewald", accuracy->reached, water.size());
+  ParticleMeshEwald mixed = mesh;
+  mixed.precision = PairPrecision::mixed;
+  for (const auto& [name, charges] : {std::pair("particle_mesh_ewald", mesh), {"particle_mesh_ewald_mixed", mixed}}) {
+    if (const auto accuracy = lattice_accuracy(charges, water)) add_error(rows, name, accuracy->reached, water.size());
+  }
   if (rows.wants("steps")) {
     set_thread_count(1);
     measure(rows, water, told, 1);

@@ -87,7 +87,7 @@ struct ScreenedCharges {
   double alpha = 0;                               ///< [1/length]
   double radius = 0;                              ///< [length]
   double error = 0;                               ///< of forces in lanes, see `screened_series`
-  PairPrecision precision = PairPrecision::full;  ///<
+  PairPrecision precision = PairPrecision::full;  ///< of forces; energies are those of doubles
 
   static constexpr auto describe() {
     return part<ScreenedCharges>("electrostatic", "the near part of a sum over a lattice of charges",

@@ -130,7 +130,7 @@ struct ReactionField {
   std::optional<double> dielectric = {};  ///< relative permittivity outside; default: a conductor, where it is infinite
   std::optional<double> switched_from = {};  ///< where a switch begins [length]; default: there is none
   bool answers_excluded = false;             ///< the dielectric answers to excluded pairs and to each charge itself too
-  PairPrecision precision = PairPrecision::full;  ///<
+  PairPrecision precision = PairPrecision::full;  ///< of forces; energies are those of doubles
 
   static constexpr auto describe() {
     return part<ReactionField>(
