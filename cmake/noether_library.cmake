@@ -17,6 +17,9 @@ function(noether_link_rooms target scope)
   endforeach()
 endfunction()
 
+# What reads, plans and writes around runs: of a wheel, small before it is quick.
+set(rooms_around_runs io scene study cli)
+
 function(noether_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 library "" "EXCEPT;PRECOMPILED_BY" "SOURCES;ROOMS;LINK;LINK_PRIVATE;PRECOMPILE")
   set(root ${PROJECT_SOURCE_DIR}/${folder})
@@ -50,7 +53,11 @@ function(noether_library folder)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     noether_unity(${target})
     if(NOETHER_STATIC)  # a wheel is to be small, and -O3 makes twice the code of what is not in lanes
-      target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
+      if(folder IN_LIST rooms_around_runs)
+        target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Os>)
+      else()
+        target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
+      endif()
     endif()
     if(simd_sources)
       noether_simd(${target} SOURCES ${simd_sources})
