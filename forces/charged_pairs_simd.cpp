@@ -8,47 +8,6 @@ namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
 
-/// x, y, z and charge of as many records as there are lanes.
-struct ChargedPoints {
-  Points place;
-  Vector charge;
-};
-
-/// As `load_points`, with the fourth numbers.
-HWY_INLINE ChargedPoints load_charged(const double* records, const std::int32_t* offsets) {
-  const auto record = [&](int k) { return records + static_cast<std::ptrdiff_t>(offsets[k]); };
-  const Lanes d;
-#if HWY_TARGET == HWY_SCALAR
-  const double* one = record(0);
-  return {{hn::Set(d, one[0]), hn::Set(d, one[1]), hn::Set(d, one[2])}, hn::Set(d, one[3])};
-#elif HWY_MAX_BYTES == 16
-  const double *one = record(0), *two = record(1);
-  const Vector a = hn::LoadU(d, one), b = hn::LoadU(d, two), c = hn::LoadU(d, one + 2), e = hn::LoadU(d, two + 2);
-  return {{hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, c, e)},
-          hn::InterleaveUpper(d, c, e)};
-#elif HWY_MAX_BYTES >= 64
-  const auto two = [&](int k) {  // records k and k + 2
-    return _mm512_mask_broadcast_f64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(record(k))), 0xf0,
-                                       _mm256_loadu_pd(record(k + 2)));
-  };
-  const __m512d a = two(0), b = two(1), c = two(4), e = two(5);
-  const __m512d xz_low = _mm512_unpacklo_pd(a, b), xz_high = _mm512_unpacklo_pd(c, e);
-  const __m512d yq_low = _mm512_unpackhi_pd(a, b), yq_high = _mm512_unpackhi_pd(c, e);
-  static_cast<void>(d);
-  return {{Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0x88)}, Vector{_mm512_shuffle_f64x2(yq_low, yq_high, 0x88)},
-           Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0xdd)}},
-          Vector{_mm512_shuffle_f64x2(yq_low, yq_high, 0xdd)}};
-#else
-  const auto two = [&](int k, int from) {  // of records k and k + 2
-    return Vector{_mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(record(k) + from)),
-                                       _mm_loadu_pd(record(k + 2) + from), 1)};
-  };
-  const Vector a = two(0, 0), b = two(1, 0), c = two(0, 2), e = two(1, 2);
-  return {{hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, c, e)},
-          hn::InterleaveUpper(d, c, e)};
-#endif
-}
-
 enum class Series : std::uint8_t { two_terms, switched, any };
 
 /// sum_k coefficients[k] t^k of several t: their chains go side by side.
@@ -76,7 +35,7 @@ HWY_INLINE void sum_lanes(const ChargedPairField& field, const PairGroup& group,
   const Lanes d;
   const ChargeSeries& series = *field.series;
   LaneSums<sums, Sum> all(field.force_unit, field.energy_unit);
-  const ChargedPoints own = load_charged(field.records, group.records + first);
+  const Records own = load_records(field.records, group.records + first);
   const Vector range2 = hn::Set(d, series.range2), scale = hn::Set(d, series.scale), offset = hn::Set(d, series.offset);
   Vector nearest = hn::Set(d, 1e300);
   const std::int32_t* entries = group.entries + first;
@@ -85,10 +44,10 @@ HWY_INLINE void sum_lanes(const ChargedPairField& field, const PairGroup& group,
     Vector dx[n], dy[n], dz[n], r2[n], product[n], t[n], inverse[n], force[n], energy[n];
     for (int k = 0; k < n; ++k) {
       __builtin_prefetch(entries + 8 * (k + rows_asked_ahead));
-      const ChargedPoints other = load_charged(field.records, entries + 8 * k);
+      const Records other = load_records(field.records, entries + 8 * k);
       const Distances pair = distances(own.place, other.place);
       dx[k] = pair.dx, dy[k] = pair.dy, dz[k] = pair.dz, r2[k] = pair.r2;
-      product[k] = hn::Mul(own.charge, other.charge);
+      product[k] = hn::Mul(own.fourth, other.fourth);
     }
     reciprocal_sqrt(d, r2, inverse);
     for (int k = 0; k < n; ++k) t[k] = kind == Series::any ? hn::MulAdd(r2[k], scale, offset) : r2[k];

@@ -26,20 +26,25 @@ struct Points {
   Vector x, y, z;
 };
 
+/// The same with the fourth numbers: types or charges.
+struct Records {
+  Points place;
+  Vector fourth;
+};
+
 /// Records are loaded whole, 32 bytes each, or in halves, which four lanes need fewer shuffles for, and turned: gathers
-/// of single numbers take longer.
-HWY_INLINE Points load_points(const double* records, const std::int32_t* offsets) {
+/// of single numbers take longer. What nobody asks for is not made.
+HWY_INLINE Records load_records(const double* records, const std::int32_t* offsets) {
   const auto record = [&](int k) { return records + static_cast<std::ptrdiff_t>(offsets[k]); };
+  const Lanes d;
 #if HWY_TARGET == HWY_SCALAR
-  const Lanes d;
   const double* one = record(0);
-  return {hn::Set(d, one[0]), hn::Set(d, one[1]), hn::Set(d, one[2])};
+  return {{hn::Set(d, one[0]), hn::Set(d, one[1]), hn::Set(d, one[2])}, hn::Set(d, one[3])};
 #elif HWY_MAX_BYTES == 16
-  const Lanes d;
   const double *one = record(0), *two = record(1);
-  const Vector a = hn::LoadU(d, one), b = hn::LoadU(d, two);
-  return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b),
-          hn::InterleaveLower(d, hn::LoadU(d, one + 2), hn::LoadU(d, two + 2))};
+  const Vector a = hn::LoadU(d, one), b = hn::LoadU(d, two), c = hn::LoadU(d, one + 2), e = hn::LoadU(d, two + 2);
+  return {{hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, c, e)},
+          hn::InterleaveUpper(d, c, e)};
 #elif HWY_MAX_BYTES >= 64
   const auto two = [&](int k) {  // records k and k + 2
     return _mm512_mask_broadcast_f64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(record(k))), 0xf0,
@@ -47,18 +52,24 @@ HWY_INLINE Points load_points(const double* records, const std::int32_t* offsets
   };
   const __m512d a = two(0), b = two(1), c = two(4), e = two(5);
   const __m512d xz_low = _mm512_unpacklo_pd(a, b), xz_high = _mm512_unpacklo_pd(c, e);
-  const __m512d y_low = _mm512_unpackhi_pd(a, b), y_high = _mm512_unpackhi_pd(c, e);
-  return {Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0x88)}, Vector{_mm512_shuffle_f64x2(y_low, y_high, 0x88)},
-          Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0xdd)}};
+  const __m512d yq_low = _mm512_unpackhi_pd(a, b), yq_high = _mm512_unpackhi_pd(c, e);
+  static_cast<void>(d);
+  return {{Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0x88)}, Vector{_mm512_shuffle_f64x2(yq_low, yq_high, 0x88)},
+           Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0xdd)}},
+          Vector{_mm512_shuffle_f64x2(yq_low, yq_high, 0xdd)}};
 #else
-  const Lanes d;
   const auto two = [&](int k, int from) {  // of records k and k + 2
     return Vector{_mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(record(k) + from)),
                                        _mm_loadu_pd(record(k + 2) + from), 1)};
   };
-  const Vector a = two(0, 0), b = two(1, 0);
-  return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, two(0, 2), two(1, 2))};
+  const Vector a = two(0, 0), b = two(1, 0), c = two(0, 2), e = two(1, 2);
+  return {{hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, c, e)},
+          hn::InterleaveUpper(d, c, e)};
 #endif
+}
+
+HWY_INLINE Points load_points(const double* records, const std::int32_t* offsets) {
+  return load_records(records, offsets).place;
 }
 
 /// From the particles in the lanes to their neighbors.
