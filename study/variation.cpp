@@ -107,7 +107,7 @@ class VariationText {
       fail(fmt::format("{} is not a valid standard deviation; a number above 0 is expected", made.second));
     }
     if (made.kind == Variation::Kind::uniform && !(made.first < made.second)) {
-      fail(fmt::format("uniform draws from {} to {} are from nothing; the first is to be below the second", made.first,
+      fail(fmt::format("the range from {} to {} is empty; the first number must be below the second", made.first,
                        made.second));
     }
   }
@@ -133,7 +133,7 @@ Variation Variation::parse(std::string_view text) { return VariationText(text).r
 
 EnsemblePlan::EnsemblePlan(std::vector<Variation> variations, std::optional<std::int64_t> draws, std::int64_t seed)
     : variations_(std::move(variations)), seed_(seed) {
-  if (variations_.empty()) throw Error("nothing varies; give --vary KEY=a:b:n, say, at least once");
+  if (variations_.empty()) throw Error("nothing varies; give --vary KEY=a:b:n at least once");
   if (seed < 0) throw Error(fmt::format("--seed {} is not valid; a whole number of 0 or more is expected", seed));
   std::set<std::string> keys;
   bool drawn = false;
@@ -150,7 +150,8 @@ EnsemblePlan::EnsemblePlan(std::vector<Variation> variations, std::optional<std:
     multiply(one.count);
     shape_.push_back(one.count);
   }
-  if (drawn && !draws) throw Error("how often is to be drawn? give --members N");
+  if (drawn && !draws)
+    throw Error("values are drawn at random, and nothing says for how many members; give --members N");
   if (!drawn && draws && *draws != members_) {
     throw Error(fmt::format("--members {} is the number of draws, but nothing is drawn: the grids have {}; take it out",
                             *draws, counted(members_, "member")));

@@ -99,15 +99,16 @@ TEST_CASE("what cannot vary is refused in a line", "[ensemble]") {
         "--vary a=unifrom(1,2): there is no distribution 'unifrom'; did you mean 'uniform'?");
   CHECK(refusal("a=uniform(1)") == "--vary a=uniform(1): uniform has two numbers: uniform(a,b), from a to b");
   CHECK(refusal("a=uniform(2,2)") ==
-        "--vary a=uniform(2,2): uniform draws from 2 to 2 are from nothing; the first is to be below the second");
+        "--vary a=uniform(2,2): the range from 2 to 2 is empty; the first number must be below the second");
   CHECK(refusal("a=normal(1,-2)") ==
         "--vary a=normal(1,-2): -2 is not a valid standard deviation; a number above 0 is expected");
   const auto plan = [](const std::vector<std::string>& texts, std::optional<std::int64_t> draws, std::int64_t seed) {
     return refusal_of([&] { plan_of(texts, draws, seed); });
   };
-  CHECK(plan({}, {}, 0) == "nothing varies; give --vary KEY=a:b:n, say, at least once");
+  CHECK(plan({}, {}, 0) == "nothing varies; give --vary KEY=a:b:n at least once");
   CHECK(plan({"a=1:2:3", "a=normal(1,2)"}, 3, 0) == "'a' varies twice; give --vary a once");
-  CHECK(plan({"a=normal(1,2)"}, {}, 0) == "how often is to be drawn? give --members N");
+  CHECK(plan({"a=normal(1,2)"}, {}, 0) ==
+        "values are drawn at random, and nothing says for how many members; give --members N");
   CHECK(plan({"a=normal(1,2)"}, 0, 0) == "--members 0 is not a valid number of members; 1 or more are expected");
   CHECK(plan({"a=1:2:3"}, 4, 0) ==
         "--members 4 is the number of draws, but nothing is drawn: the grids have 3 members; take it out");
