@@ -11,7 +11,8 @@ trial of less than 0.01, less).
 with hydrogens of 3 u, at 4 fs. The drift is that of the report, from the slope through block means, in kT/ns/atom with its error. Asked: below 1e-3,
 known to 1e-3.
 
-**dielectric**: under a bath of 0.2/ps at 2 fs, by particle mesh Ewald, from the fluctuations of the dipole moment."""
+**dielectric**: under a bath of 0.2/ps, by particle mesh Ewald in mixed precision, from the fluctuations of the dipole moment; at 4 fs with hydrogens
+of 3 u, since masses do not change what an ensemble tells of places."""
 
 import argparse
 import json
@@ -100,11 +101,12 @@ def drift(program, folder, span):
 
 def dielectric(program, folder, span):
     kind = "particle_mesh_ewald"
-    begun = warm(program, folder, kind, 2, None, span)
-    report = run(program, folder, "dielectric", start_of(begun) + FORCES.format(kind=kind, keys=CHARGES[kind]) +
-                 BATH.format(friction=0.2) + RUN.format(method="BAOAB", step=2, until=5000 * span) +
-                 LOOK.format(what="dielectric_constant", steps=50, keys='temperature = "300 K"') +
-                 LOOK.format(what="temperature", steps=50, keys=""))
+    begun = warm(program, folder, kind, 4, 3, span)
+    report = run(program, folder, "dielectric",
+                 start_of(begun) + FORCES.format(kind=kind, keys=CHARGES[kind] + '\nprecision = "mixed"') +
+                 BATH.format(friction=0.2) + RUN.format(method="BAOAB", step=4, until=5000 * span) +
+                 LOOK.format(what="dielectric_constant", steps=25, keys='temperature = "300 K"') +
+                 LOOK.format(what="temperature", steps=25, keys=""))
     print("dielectric constant:", json.dumps(report["monitors"]), flush=True)
 
 

@@ -17,8 +17,9 @@ function(noether_link_rooms target scope)
   endforeach()
 endfunction()
 
-# What reads, plans and writes around runs: of a wheel, small before it is quick.
-set(rooms_around_runs io scene study cli)
+# Of a wheel, the rooms whose own loops take the time of runs; the others are small before they are quick. What is in lanes is
+# compiled for speed everywhere.
+set(rooms_of_loops numbers neighbors integrators)
 
 function(noether_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 library "" "EXCEPT;PRECOMPILED_BY" "SOURCES;ROOMS;LINK;LINK_PRIVATE;PRECOMPILE")
@@ -53,10 +54,10 @@ function(noether_library folder)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     noether_unity(${target})
     if(NOETHER_STATIC)  # a wheel is to be small, and -O3 makes twice the code of what is not in lanes
-      if(folder IN_LIST rooms_around_runs)
-        target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Os>)
-      else()
+      if(folder IN_LIST rooms_of_loops)
         target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
+      else()
+        target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Os>)
       endif()
     endif()
     if(simd_sources)
