@@ -19,7 +19,7 @@ endfunction()
 
 # Of a wheel, the rooms whose own loops take the time of runs; the others are small before they are quick. What is in lanes is
 # compiled for speed everywhere.
-set(rooms_of_loops numbers neighbors integrators)
+set(rooms_of_loops numbers neighbors engine integrators)
 
 function(noether_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 library "" "EXCEPT;PRECOMPILED_BY" "SOURCES;ROOMS;LINK;LINK_PRIVATE;PRECOMPILE")
