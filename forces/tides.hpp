@@ -5,6 +5,7 @@
 #include "engine/bodies.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "engine/sphere_columns.hpp"
 
 #include <optional>
 #include <string_view>
@@ -16,13 +17,6 @@ namespace noether {
 struct LoveNumber {
   template <class Real> using type = ScalarColumn<Real>;
   static constexpr std::string_view name = "love_number", dimension = "1";
-  static constexpr ColumnRole role = ColumnRole::parameter;
-};
-
-/// The radius of a body, shape (n) [length].
-struct BodyRadius {
-  template <class Real> using type = ScalarColumn<Real>;
-  static constexpr std::string_view name = "radius", dimension = "length";
   static constexpr ColumnRole role = ColumnRole::parameter;
 };
 

@@ -42,6 +42,13 @@ template <class Real> class Epicycle {
     }
   }
 
+  /// The same with numbers in `Real` itself, for an epicycle that few particles make: angles are those of its rounding.
+  static Epicycle plain(const SheetRates& rates, const Real& h) {
+    Epicycle made;
+    made.template set<Real>(rates, h);
+    return made;
+  }
+
   /// By how much a particle moves.
   struct Change {
     Vec3<Real> x, v;

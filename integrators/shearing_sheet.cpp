@@ -11,6 +11,17 @@ void ShearingSheetOptions::check() const {
   }
 }
 
+AnyHamiltonian<double> with_letter(const HardSpheres& law, const AnyHamiltonian<double>& hamiltonian) {
+  const auto* sheet = hamiltonian.as<ShearingSheet<ForceField<double>>>();
+  if (sheet == nullptr) {
+    throw SchemeMismatch("hard spheres are those of 'shearing_sheet', not of '" + detail::name_of(hamiltonian) +
+                         "'; use that, name them before drag, or take hard_spheres out");
+  }
+  ShearingSheet<ForceField<double>> with_spheres = *sheet;
+  with_spheres.add_spheres(law);
+  return with_spheres;
+}
+
 template class ShearingSheet<ForceField<double>>;
 template class ShearingSheet<ForceField<Quad>, Quad>;
 template struct detail::HamiltonianModel<ShearingSheet<ForceField<double>>>;

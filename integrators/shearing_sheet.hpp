@@ -10,6 +10,7 @@
 #include "integrators/epicycle.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/sheared_box.hpp"
+#include "integrators/sphere_contacts.hpp"
 
 #include <array>
 #include <cstddef>
@@ -56,6 +57,9 @@ struct ShearingSheetOptions {
 /// canonical momenta are m (v_x, v_y + 2 Omega x, v_z), which copies for observers that want the action show in the
 /// place of m v. Conserved is the energy in the turning frame, of which Jacobi's constant is - 2. The action of A is
 /// half of what p . q gains, that of B is - h U.
+///
+/// With hard spheres A is the motion of free particles that rebound from each other, and runs forward only: it is still
+/// an exact flow, but a kick is shared alike between the time before a contact in a step and the time after it.
 /// @cost 29 operations a particle for A; one evaluation of the forces for B, nothing where there are none
 /// @source Hill1878, ReinTremaine2011
 template <class F, class Real = double> class ShearingSheet {
@@ -73,6 +77,13 @@ template <class F, class Real = double> class ShearingSheet {
     HamiltonianClaims claims = kicks_.claims();
     claims.periodic = knows_boxes;
     claims.keeps_momentum = claims.keeps_angular_momentum = false;
+    if (spheres_) {
+      claims.irreversible = "A";
+      claims.dissipative = true;
+      claims.symplectic = false;
+      claims.columns = true;
+      claims.no_action = "hard spheres rebound in no time, so the motion has no action";
+    }
     if (!boxed_) return claims;
     claims.coordinates = unsheared;
     claims.inertial = false;
@@ -81,6 +92,8 @@ template <class F, class Real = double> class ShearingSheet {
     return claims;
   }
   const F& forces() const { return kicks_.forces(); }
+  /// Makes those particles that have a radius hard spheres.
+  void add_spheres(const HardSpheres& law) requires std::is_same_v<Real, double> { spheres_.emplace(law); }
 
   /// @throws Error  in a periodic box with other forces than gravity
   void bind(ParticleSystem<Real>& s);
@@ -102,16 +115,19 @@ template <class F, class Real = double> class ShearingSheet {
     observing_ = wanted.has_value();
     shows_momenta_ = wanted && wanted->action;
   }
-  const std::optional<Failure>& failure() const { return kicks_.failure(); }
+  const std::optional<Failure>& failure() const { return failure_ ? failure_ : kicks_.failure(); }
   Evaluations evaluations() const { return boxed_ ? Evaluations{.force = evaluations_} : kicks_.evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const {
     detail::save_signature(saved, prefix + "frame/", frame_);
+    if (spheres_) detail::save_signature(saved, prefix + "spheres/", spheres_->law());
     kicks_.save(saved, prefix);
     save_value(saved, prefix + "evaluations_in_box", evaluations_);
   }
-  /// @throws Error  if the saved sheet turned otherwise, or had other forces
+  /// @throws Error  if the saved sheet turned otherwise, or had other spheres or forces
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "frame/", frame_);
+    if (spheres_) detail::check_signature(saved, prefix + "spheres/", spheres_->law());
+    failure_.reset();
     kicks_.load(saved, prefix);
     load_value(saved, prefix + "evaluations_in_box", evaluations_);
   }
@@ -129,7 +145,10 @@ template <class F, class Real = double> class ShearingSheet {
   void move(ParticleSystem<Real>& s, const Epicycle<Real>& epicycle);
   Advance run_free(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span);
   void move_all(ParticleSystem<Real>& s);
-  /// @param end  time at the end of an epicycle
+  /// @param end  time at the end of the epicycle
+  void move_to(ParticleSystem<Real>& s, const Epicycle<Real>& epicycle, const Real& end);
+  /// An epicycle of spheres that touch, in pieces where they are too fast to be followed at once.
+  void move_spheres(ParticleSystem<Real>& s, const Real& h, const Real& end);
   void flow_in_box(char letter, ParticleSystem<Real>& s, const Real& h, const Real& end);
 
   KineticPotential<F, Real> kicks_;
@@ -141,6 +160,8 @@ template <class F, class Real = double> class ShearingSheet {
   std::size_t waiting_ = 0;
   std::conditional_t<knows_boxes, ShearedBox<Real>, NoBox> box_;
   bool boxed_ = false;
+  std::optional<SphereContacts> spheres_;
+  std::optional<Failure> failure_;
   std::int64_t evaluations_ = 0;  ///< in a box
   bool forces_act_ = true;
   bool observing_ = false;
@@ -150,6 +171,10 @@ template <class F, class Real = double> class ShearingSheet {
 template <class Real> AnyHamiltonian<Real> ShearingSheetOptions::split(ForceField<Real> forces) const {
   return ShearingSheet<ForceField<Real>, Real>(std::move(forces), *this);
 }
+
+/// Hard spheres as a part of A, for scenes: what `[[hamiltonian.force]] type = "hard_spheres"` makes of a sheet.
+/// @throws SchemeMismatch  for another Hamiltonian
+AnyHamiltonian<double> with_letter(const HardSpheres& law, const AnyHamiltonian<double>& hamiltonian);
 
 template <class F> ShearingSheet(F) -> ShearingSheet<F, double>;
 template <class F> ShearingSheet(F, ShearingSheetOptions) -> ShearingSheet<F, double>;

@@ -14,11 +14,16 @@ template <class F, class Real> void ShearingSheet<F, Real>::bind(ParticleSystem<
   forces_act_ = !std::is_same_v<F, Sum<>>;
   if constexpr (requires(const F& f) { f.terms().empty(); }) forces_act_ = !kicks_.forces().terms().empty();
   boxed_ = s.box().is_periodic();
-  if (!boxed_) return kicks_.bind(s);
-  if constexpr (knows_boxes) {
+  failure_.reset();
+  if (!boxed_) {
+    kicks_.bind(s);
+  } else if constexpr (knows_boxes) {
     box_.bind(s, rates_, kicks_.forces());
   } else {
     throw Error("shearing sheets in boxes are stepped one system at a time; run these systems one by one");
+  }
+  if constexpr (std::is_same_v<Real, double>) {
+    if (spheres_) spheres_->bind(s, rates_);
   }
 }
 
@@ -73,16 +78,46 @@ template <class F, class Real> void ShearingSheet<F, Real>::flow(char letter, Pa
       return flow_in_box(letter, s, h, s.time());
     }
   }
-  if (letter == 'A') return move(s, epicycle(h));
+  if (letter == 'A') return spheres_ ? move_spheres(s, h, h) : move(s, epicycle(h));
   if (forces_act_) kicks_.flow(letter, s, h);
 }
 
 template <class F, class Real>
 void ShearingSheet<F, Real>::flow_in_box(char letter, ParticleSystem<Real>& s, const Real& h, const Real& end) {
   if constexpr (knows_boxes) {
-    if (letter == 'A') return box_.move(s, epicycle(h), end);
+    if (letter == 'A') return spheres_ ? move_spheres(s, h, end) : box_.move(s, epicycle(h), end);
     box_.kick(s, h);
     if (!observing_ && forces_act_) ++evaluations_;
+  }
+}
+
+template <class F, class Real>
+void ShearingSheet<F, Real>::move_to(ParticleSystem<Real>& s, const Epicycle<Real>& epicycle, const Real& end) {
+  if constexpr (knows_boxes) {
+    if (boxed_) return box_.move(s, epicycle, end);
+  }
+  move(s, epicycle);
+}
+
+template <class F, class Real>
+void ShearingSheet<F, Real>::move_spheres(ParticleSystem<Real>& s, const Real& h, const Real& end) {
+  if constexpr (std::is_same_v<Real, double>) {
+    spheres_->begin(s);
+    for (double left = h; left > 0;) {
+      const double window = spheres_->find(s, left, boxed_ ? 1.5 * rates_.Omega * (end - left) : 0.0);
+      const double after = window == left ? 0.0 : left - window;
+      move_to(s, window == h ? epicycle(h) : Epicycle<double>::plain(rates_, window), end - after);
+      spheres_->put(s);
+      left = after;
+      if (!spheres_->piles_up()) continue;
+      if (!observing_) {
+        failure_ = Failure{Outcome::Kind::solver_failure, -1, "velocity",
+                           "spheres pile up: they touch more than 1000 times each in one flow; give a larger "
+                           "minimum_rebound or a smaller step"};
+      }
+      if (left > 0) move_to(s, Epicycle<double>::plain(rates_, left), end);
+      return;
+    }
   }
 }
 
@@ -123,7 +158,7 @@ template <class F, class Real> void ShearingSheet<F, Real>::move_all(ParticleSys
 template <class F, class Real>
 Advance ShearingSheet<F, Real>::run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
   if constexpr (in_blocks) {
-    if (!boxed_ && !forces_act_ && s.low_words() == nullptr) return run_free(word, s, span);
+    if (!boxed_ && !forces_act_ && !spheres_ && s.low_words() == nullptr) return run_free(word, s, span);
   }
   if (!boxed_) return walk_letters(*this, word, s, span, [&](char letter, const Real& h) { flow(letter, s, h); });
   const Real dt(s.clock().dt()), first = word.stages().front().weight;
@@ -136,7 +171,7 @@ Advance ShearingSheet<F, Real>::run(const TimedWord<Real>& word, ParticleSystem<
 
 template <class F, class Real>
 Real ShearingSheet<F, Real>::flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
-  if (boxed_) throw LogicError("a sheet in a box has no action");
+  if (boxed_ || spheres_) throw LogicError("a sheet in a box, or of hard spheres, has no action");
   if (letter != 'A') return forces_act_ ? kicks_.flow_with_action(letter, s, h) : Real(0);
   const Epicycle<Real>& epicycle = this->epicycle(h);
   const Real rate = Real(2) * Real(rates_.Omega);

@@ -96,8 +96,8 @@ constexpr std::array names_of_others = {
                 NamePlace::none, "",
                 "there is no barostat here: the box stays as it is; a temperature is held by type = 'langevin' in "
                 "[hamiltonian.thermostat], and the monitor 'pressure' tells the pressure"},
-    ForeignName{" sei shearing_sheet hill ", NamePlace::none, "",
-                "there is no shearing sheet here; bodies about a planet or a star are a scene of 'wisdom_holman'"},
+    ForeignName{" sei hill shearing_box hills_equations ", NamePlace::hamiltonian, "shearing_sheet",
+                "with method = 'verlet_aba'"},
     ForeignName{" steep steepest_descent cg l_bfgs lbfgs fire minimization minimisation min ", NamePlace::none, "",
                 "energy is minimized before a run by the table [minimize]"},
     // Forces.
@@ -130,6 +130,8 @@ constexpr std::array names_of_others = {
     ForeignName{" drag friction damping viscous modify_orbits_forces ", NamePlace::force, "linear_drag"},
     ForeignName{" tide tidal tides_spin tides_constant_time_lag tctl tidal_force ", NamePlace::force, "tides",
                 "for rigid bodies, with the keys love_number, radius and tide_lag"},
+    ForeignName{" hard_sphere hardsphere collisions hard_sphere_collisions granular ", NamePlace::force, "hard_spheres",
+                "for spheres of the Hamiltonian 'shearing_sheet'", true},
     ForeignName{" efield electric_field constant_force addforce constant_field ", NamePlace::force, "uniform_field"},
     ForeignName{" buck born born_mayer exp6 exp_6 ", NamePlace::force, "buckingham"},
     ForeignName{" lj_repulsive weeks_chandler_andersen ", NamePlace::force, "wca"},

@@ -14,6 +14,7 @@
 #include "forces/gr_potential.hpp"
 #include "forces/gravity.hpp"
 #include "forces/gravity_of_bodies.hpp"
+#include "forces/hard_spheres.hpp"
 #include "forces/henon_heiles.hpp"
 #include "forces/hyperelastic.hpp"
 #include "forces/lennard_jones.hpp"
@@ -230,6 +231,7 @@ Parts standard_parts() {
   parts.add_force<Traction>();
   parts.add_force<LinearDrag>();
   parts.add_force<Tides>();
+  parts.add_force<HardSpheres>();
   add_fields(parts);
   add_constraints(parts);
   add_systems(parts);

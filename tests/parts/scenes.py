@@ -198,6 +198,9 @@ ROCKS = ("[[particles.rigid_body]]\nname = 'one'\nmass = 1.0\nx = [0.0, 0.0, 0.0
          "inertia = [0.002, 0.003, 0.003]\nangular_velocity = [0.0, 0.5, 1.0]\naxis = [0, 1, 0]\nangle = 0.3\n" +
          body("stone", 0.001, (0.0, -2.0, 0.1), (0.7, 0.0, 0.0)))
 PULL = "type = 'gravity_of_bodies'; G = 1"
+SPHERES = ("[particles]\nbox = [10, 8, 20]\n" +
+           body("one", 1.0, (1.0, 1.0, 0.0), (0.5, -1.5, 0.0), "radius = 0.5\n") +
+           body("other", 2.0, (3.0, 1.0, 0.25), (-0.5, -4.5, 0.0), "radius = 0.75\n"))
 # What the second degree of the first leaves out, about its own axis.
 OWN_AXIS = "type = 'oblateness'; J4 = -0.05; radius = 0.2; axis = [0.1, 0.0, 1.0]; frame = 'body'; G = 1"
 
@@ -261,6 +264,9 @@ FORCES = {
     "tides": Case(ROCKS.replace("angular_velocity = [0.3", "love_number = 0.4\nradius = 0.2\ntide_lag = 0.01\nangular_velocity = [0.3"),
                   forces(PULL, "type = 'tides'; G = 1"), rivals=FORWARD),
     "linear_drag": Case(PAIR, forces(SPRING, "type = 'linear_drag'; rate = 0.1"), rivals=FORWARD),
+    "hard_spheres": Case(SPHERES, '[hamiltonian]\ntype = "shearing_sheet"\nOmega = 1\n' +
+                         table("hamiltonian.force", "type = 'hard_spheres'; restitution = 0.5") +
+                         table("hamiltonian.force", GRAVITY), rivals=FORWARD),
 }
 
 THERMOSTATS = {

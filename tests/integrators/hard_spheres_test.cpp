@@ -1,0 +1,434 @@
+/// Hard spheres in a shearing sheet: contacts at their times, none missed and none twice, and what is kept in them.
+
+#include "forces/hard_spheres.hpp"
+#include "engine/simulation.hpp"
+#include "forces/gravity.hpp"
+#include "integrators/all_schemes.hpp"
+#include "integrators/shearing_sheet.hpp"
+#include "integrators/sphere_contacts.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
+#include "tests/support/ring_spheres.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace noether {
+namespace {
+
+using test::sheet_of_spheres;
+
+/// A free particle after a time, by the closed form of an epicycle about its guiding centre.
+struct Place {
+  Vec3<double> x, v;  ///< in space
+
+  Place at(double t, double Omega, double Omega_z) const {
+    const double w = v[1] + 1.5 * Omega * x[0], guide = x[0] + 2 * w / Omega, c = std::cos(Omega * t),
+                 s = std::sin(Omega * t);
+    const double across = guide - 2 * w / Omega * c + v[0] / Omega * s;
+    const double z =
+        Omega_z > 0 ? x[2] * std::cos(Omega_z * t) + v[2] / Omega_z * std::sin(Omega_z * t) : x[2] + v[2] * t;
+    const double vz = Omega_z > 0 ? v[2] * std::cos(Omega_z * t) - x[2] * Omega_z * std::sin(Omega_z * t) : v[2];
+    const double w_then = w * c - v[0] / 2 * s;
+    return {{across, x[1] - 1.5 * Omega * guide * t + 4 / Omega * (w * s + v[0] / 2 * (c - 1)), z},
+            {v[0] * c + 2 * w * s, w_then - 1.5 * Omega * across, vz}};
+  }
+};
+
+/// A particle of a box as if it had never been wrapped: the cell that it is in has slid along y.
+Place on_its_path(const ParticleSystem<double>& s, Index i, double Omega) {
+  Vec3<double> x = s.unwrapped(i);
+  x[1] = s.positions()[i][1] - 1.5 * Omega * s.time() * s.box().edges()[0] * s.images().component(0)[i];
+  return {x, s.velocities()[i]};
+}
+
+/// Contacts within a step by a search that knows nothing of the engine's: the gap of every pair, through all nine
+/// images and by its closed form, is looked at in pieces of the step, and where it has a minimum there.
+class ByPairs {
+ public:
+  ByPairs(const ParticleSystem<double>& s, const HardSpheres& law, double Omega)
+      : edges_(s.box().edges()), time_(s.time()), law_(law), Omega_(Omega) {
+    for (Index i = 0; i < s.size(); ++i) {
+      all_.push_back(on_its_path(s, i, Omega));
+      masses_.push_back(s.masses()[i]);
+      radii_.push_back(s.column<BodyRadius>()[i]);
+    }
+  }
+  int contacts() const { return contacts_; }
+  const std::vector<Place>& places() const { return all_; }
+
+  void step(double h) {
+    double left = h;
+    std::pair<std::size_t, std::size_t> last{0, 0};
+    while (true) {
+      double first = left;
+      std::pair<std::size_t, std::size_t> who{0, 0};
+      Vec3<double> offset;
+      for (std::size_t i = 0; i < all_.size(); ++i) {
+        for (std::size_t j = i + 1; j < all_.size(); ++j) {
+          for (const Vec3<double>& image : images(i, j)) {
+            const double t = root(image_of(j, image), i, radii_[i] + radii_[j], first, std::pair{i, j} == last);
+            if (t < first) first = t, who = {i, j}, offset = image;
+          }
+        }
+      }
+      const Place hit = who.second > 0 ? image_of(who.second, offset) : Place{};
+      const double touch = who.second > 0 ? first : left;
+      if (who.second > 0) collide(who.first, who.second, hit, touch);
+      for (std::size_t i = 0; i < all_.size(); ++i) {
+        if (who.second > 0 && (i == who.first || i == who.second)) continue;
+        all_[i] = all_[i].at(touch, Omega_, Omega_);
+      }
+      time_ += touch;
+      left -= touch;
+      last = who;
+      if (who.second == 0) return;
+    }
+  }
+
+ private:
+  /// How far, in cells, the images of j that can be near i are away.
+  std::vector<Vec3<double>> images(std::size_t i, std::size_t j) const {
+    std::vector<Vec3<double>> all;
+    const double dx = all_[j].x[0] - all_[i].x[0], near = -std::nearbyint(dx / edges_[0]);
+    for (int a = -1; a <= 1; ++a) {
+      const double across = near + a, x = dx + across * edges_[0];
+      const double y = all_[j].x[1] - all_[i].x[1] - 1.5 * Omega_ * time_ * across * edges_[0];
+      const double along = -std::nearbyint(y / edges_[1]);
+      const double reach = radii_[i] + radii_[j] + 1;
+      for (int b = -1; b <= 1; ++b) {
+        if (std::abs(x) < reach && std::abs(y + (along + b) * edges_[1]) < reach)
+          all.emplace_back(across, along + b, 0);
+      }
+    }
+    return all;
+  }
+  Place image_of(std::size_t j, const Vec3<double>& image) const {
+    Place there = all_[j];
+    there.x[0] += image[0] * edges_[0];
+    there.x[1] += image[1] * edges_[1] - 1.5 * Omega_ * time_ * image[0] * edges_[0];
+    there.v[1] -= 1.5 * Omega_ * image[0] * edges_[0];
+    return there;
+  }
+  /// The difference of two epicycles is an epicycle.
+  double root(const Place& there, std::size_t i, double touch, double left, bool just_met) const {
+    const Place d{there.x - all_[i].x, there.v - all_[i].v};
+    const auto gap = [&](double t) { return d.at(t, Omega_, Omega_).x.norm() - touch; };
+    const auto closing = [&](double t) {
+      const Place then = d.at(t, Omega_, Omega_);
+      return then.x.dot(then.v);
+    };
+    constexpr int pieces = 12;
+    if (gap(0) > 2 * left + left * d.v.norm()) return left;
+    double from = 0;
+    if (!just_met && gap(0) <= 1e-13 && closing(0) < 0) return 0;
+    for (int k = 1; k <= pieces; ++k) {
+      const double to = left * k / pieces;
+      double low = from, high = to;
+      if (closing(from) < 0 && closing(to) > 0) {  // a minimum between
+        for (int n = 0; n < 60; ++n) (closing((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
+      }
+      if (closing(from) < 0 && gap(high) < 0) {
+        low = from;
+        for (int n = 0; n < 60; ++n) (gap((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
+        return high;
+      }
+      from = to;
+    }
+    return left;
+  }
+  void collide(std::size_t i, std::size_t j, const Place& image, double t) {
+    Place one = all_[i].at(t, Omega_, Omega_);
+    const Place there = image.at(t, Omega_, Omega_);
+    Place other = all_[j].at(t, Omega_, Omega_);
+    const Vec3<double> n = (there.x - one.x).normalized();
+    const double approach = -(there.v - one.v).dot(n);
+    const double gain = approach + law_.rebound(approach, Omega_ * (radii_[i] + radii_[j]) / 2000);
+    one.v -= masses_[j] / (masses_[i] + masses_[j]) * gain * n;
+    other.v += masses_[i] / (masses_[i] + masses_[j]) * gain * n;
+    all_[i] = one;
+    all_[j] = other;
+    ++contacts_;
+  }
+
+  Vec3<double> edges_;
+  double time_;
+  HardSpheres law_;
+  double Omega_;
+  std::vector<Place> all_;
+  std::vector<double> masses_, radii_;
+  int contacts_ = 0;
+};
+
+double total_contacts(const ParticleSystem<double>& s) { return s.column<ContactCount>().all().sum() / 2; }
+
+/// The deepest overlap of two spheres through all images, by pairs.
+double deepest_overlap(const ParticleSystem<double>& s, double Omega) {
+  double deepest = 0;
+  const Vec3<double> edges = s.box().edges();
+  const double slide = 1.5 * Omega * s.time() * edges[0];
+  for (Index i = 0; i < s.size(); ++i) {
+    for (Index j = i + 1; j < s.size(); ++j) {
+      const Vec3<double> d = std::as_const(s).positions()[j] - std::as_const(s).positions()[i];
+      const double touch = s.column<BodyRadius>()[i] + s.column<BodyRadius>()[j];
+      for (int a = -1; a <= 1; ++a) {
+        const double x = d[0] + a * edges[0];
+        double y = d[1] - a * slide;
+        y -= edges[1] * std::nearbyint(y / edges[1]);
+        const double z = d[2] - edges[2] * std::nearbyint(d[2] / edges[2]);
+        deepest = std::max(deepest, 1 - std::sqrt(x * x + y * y + z * z) / touch);
+      }
+    }
+  }
+  return deepest;
+}
+
+}  // namespace
+
+TEST_CASE("contacts of spheres are those of a search by pairs", "[integrators][hard_spheres]") {
+  // The whole state after each step, from the same state: a contact that is missed, or met twice, shows.
+  const HardSpheres law{.restitution = 0.7};
+  const auto s = test::patch({.count = 40, .thickness = 4, .speed = 2});
+  Composition<AnyHamiltonian<double>> integrator(sheet_of_spheres({}, law), schemes::verlet);
+  auto raw = s;
+  const double h = 0.1;
+  raw.clock() = Clock<double>::fixed(0, h);
+  integrator.bind(raw);
+  auto now = raw;
+  double worst = 0;
+  int contacts = 0;
+  for (int step = 0; step < 60; ++step) {
+    ByPairs truth(now, law, 1);
+    const double before = step > 0 ? total_contacts(now) : 0;
+    integrator.advance(raw, {.steps = 1});
+    integrator.settle(raw, now, {}, std::nullopt, true);
+    truth.step(h);
+    REQUIRE(truth.contacts() == static_cast<int>(total_contacts(now) - before));
+    contacts += truth.contacts();
+    for (Index i = 0; i < now.size(); ++i) {
+      Vec3<double> d = truth.places()[static_cast<std::size_t>(i)].x - on_its_path(now, i, 1).x;
+      d[1] -= s.box().edges()[1] * std::nearbyint(d[1] / s.box().edges()[1]);
+      worst = std::max(worst, d.cwiseAbs().maxCoeff());
+      worst = std::max(
+          worst,
+          (truth.places()[static_cast<std::size_t>(i)].v - Vec3<double>(now.velocities()[i])).cwiseAbs().maxCoeff());
+    }
+  }
+  INFO(contacts << " contacts");
+  CHECK(contacts > 100);
+  CHECK(worst <= 1e-10);
+}
+
+TEST_CASE("two spheres of a sheet meet where their epicycles say", "[integrators][hard_spheres]") {
+  // In open space: the time of the contact by halving in 113 bits, and a rebound by hand; a tracer is a sphere too.
+  const HardSpheres ice{.restitution = 0.32, .restitution_exponent = -0.234, .restitution_speed = 0.01};
+  for (const double mass : {0.5, 0.0, 3.0}) {
+    ParticleSystem<double> s(unit_system("reduced"));
+    s.add("inner", mass, {-0.5, 1.0, 0.1}, {0.1, 0.5, 0.05});
+    s.add("outer", 0.5, {0.25, 2.0, -0.1}, {-0.2, -0.75, 0});
+    s.add_column<BodyRadius>()[0] = 0.25;
+    s.column<BodyRadius>()[1] = 0.125;
+    const double h = 1.5, touch = 0.375;
+    const auto at = [&](double t, Index i) {
+      return Place{std::as_const(s).positions()[i], std::as_const(s).velocities()[i]}.at(t, 1, 0.5);
+    };
+    const auto gap = [&](double t) { return (at(t, 1).x - at(t, 0).x).norm() - touch; };
+    double low = 0, high = 0;
+    while (gap(high) > 0) high += 1e-3;
+    REQUIRE(high < h);
+    for (int n = 0; n < 60; ++n) (gap((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
+    Place one = at(high, 0), other = at(high, 1);
+    const Vec3<double> n = (other.x - one.x).normalized();
+    const double approach = (one.v - other.v).dot(n), epsilon = std::min(1.0, 0.32 * std::pow(approach / 0.01, -0.234));
+    REQUIRE(epsilon < 0.5);
+    const double gain = (1 + epsilon) * approach, share = mass == 0 ? 1 : 0.5 / (mass + 0.5);
+    one.v -= share * gain * n;
+    other.v += (1 - share) * gain * n;
+    one = one.at(h - high, 1, 0.5);
+    other = other.at(h - high, 1, 0.5);
+    for (const int steps : {1, 10}) {
+      INFO("mass " << mass << ", " << steps << " steps");
+      const auto found =
+          test::run(sheet_of_spheres({.Omega = 1, .Omega_z = 0.5}, ice), schemes::verlet, s, h / steps, steps);
+      CHECK((Vec3<double>(found.positions()[0]) - one.x).cwiseAbs().maxCoeff() <= 1e-13);
+      CHECK((Vec3<double>(found.positions()[1]) - other.x).cwiseAbs().maxCoeff() <= 1e-13);
+      CHECK((Vec3<double>(found.velocities()[0]) - one.v).cwiseAbs().maxCoeff() <= 1e-13);
+      CHECK((Vec3<double>(found.velocities()[1]) - other.v).cwiseAbs().maxCoeff() <= 1e-13);
+      CHECK(found.column<ContactCount>()[0] == 1);
+      CHECK(found.column<ContactCount>()[1] == 1);
+      // What was lost is in the column of heat.
+      const double reduced = mass * 0.5 / (mass + 0.5),
+                   lost = reduced * approach * approach * (1 - epsilon * epsilon) / 2;
+      CHECK(std::abs(found.column<ContactHeat>()[0] + found.column<ContactHeat>()[1] - lost) <= 1e-14);
+    }
+  }
+}
+
+TEST_CASE("spheres keep momentum in contacts, elastic ones energy", "[integrators][hard_spheres]") {
+  // The sums of m x' and m w turn as those of one free particle, whatever spheres do to each other; in open space the
+  // energy in the turning frame is that of the start.
+  const double h = 0.05;
+  const int steps = 400;
+  auto s = test::patch({.count = 60, .thickness = 3, .speed = 1});
+  const auto sums = [](const ParticleSystem<double>& of) {
+    Vec3<double> sum(0, 0, 0);
+    for (Index i = 0; i < of.size(); ++i) {
+      const Vec3<double> v = of.velocities()[i];
+      sum += of.masses()[i] * Vec3<double>(v[0], v[1] + 1.5 * of.unwrapped(i)[0], v[2]);
+    }
+    return sum;
+  };
+  const auto height = [](const ParticleSystem<double>& of) {
+    double sum = 0;
+    for (Index i = 0; i < of.size(); ++i) sum += of.masses()[i] * of.unwrapped(i)[2];
+    return sum;
+  };
+  const Vec3<double> before = sums(s);
+  const auto after = test::run(sheet_of_spheres({}, {.restitution = 0.5}), schemes::verlet, s, h, steps);
+  CHECK(total_contacts(after) > 300);
+  const double c = std::cos(h * steps), sine = std::sin(h * steps);
+  const Vec3<double> turned(before[0] * c + 2 * before[1] * sine, before[1] * c - before[0] / 2 * sine,
+                            before[2] * c - height(s) * sine);
+  const Vec3<double> error = sums(after) - turned;
+  CHECK(error.cwiseAbs().maxCoeff() <= 1e-12);
+
+  s.set_box(Box::open());
+  auto elastic = sheet_of_spheres({}, {.restitution = 1, .minimum_rebound = 1e-12});
+  const double energy = elastic.energy(s).total();
+  const auto scattered = test::run(elastic, schemes::verlet, s, h, 40);
+  CHECK(total_contacts(scattered) > 30);
+  CHECK(std::abs(elastic.energy(scattered).total() - energy) <= 1e-12 * std::abs(energy));
+}
+
+TEST_CASE("spheres have the same bits where a box is cut elsewhere, over threads, cadences and saves",
+          "[integrators][hard_spheres]") {
+  const HardSpheres law{.restitution = 0.5};
+  const auto start = [&](double cut) {
+    auto s = test::patch({.count = 300, .edges = {28, 20, 40}, .thickness = 3, .speed = 0.5, .cut = cut});
+    return Simulation<double>(std::move(s), compose(sheet_of_spheres({}, law), schemes::verlet_aba), 0.0625);
+  };
+  const int before = thread_count();
+  set_thread_count(1);
+  auto alone = start(0);
+  REQUIRE(alone.run(48).ok());
+  const auto expected = alone.particles();
+  CHECK(total_contacts(expected) > 200);
+  auto elsewhere = start(9);
+  REQUIRE(elsewhere.run(48).ok());
+  CHECK((elsewhere.particles().positions().all() == expected.positions().all()));
+  CHECK((elsewhere.particles().column<ContactTransport>().all() == expected.column<ContactTransport>().all()));
+  for (const int threads : {2, 3}) {
+    set_thread_count(threads);
+    auto sim = start(0);
+    for (const int piece : {1, 20, 27}) {
+      REQUIRE(sim.run(piece).ok());
+      const auto seen = sim.particles();  // a settled copy
+      const SavedRun saved = sim.save();
+      sim = start(0);
+      sim.restore(saved);
+    }
+    CHECK((sim.particles().positions().all() == expected.positions().all()));
+    CHECK((sim.particles().velocities().all() == expected.velocities().all()));
+    CHECK((sim.particles().column<ContactHeat>().all() == expected.column<ContactHeat>().all()));
+  }
+  set_thread_count(before);
+}
+
+TEST_CASE("spheres pressed together come to rest, or say that they pile up", "[integrators][hard_spheres]") {
+  // Seven that attract each other and lose all of their speed of approach: a heap.
+  ParticleSystem<double> s(unit_system("reduced"));
+  s.add_column<BodyRadius>();
+  for (int k = 0; k < 7; ++k) {
+    const double a = 1.0471975511965976 * k;
+    s.add("", 1, k == 6 ? Vec3<double>(0, 0, 0) : Vec3<double>(2.1 * std::cos(a), 2.1 * std::sin(a), 0.1 * (k % 3)),
+          {0, 0, 0});
+    s.column<BodyRadius>()[k] = 1;
+  }
+  auto heap = sheet_of_spheres({.Omega = 0.05}, {.restitution = 0}, Gravity{.G = 1});
+  const auto rested = test::run(heap, schemes::verlet, s, 0.01, 2000);
+  double fastest = 0, widest = 0;
+  for (Index i = 0; i < rested.size(); ++i) {
+    for (Index j = 0; j < i; ++j) {
+      const Vec3<double> d = rested.positions()[j] - rested.positions()[i];
+      CHECK(d.norm() >= 2 * (1 - 1e-12));
+      widest = std::max(widest, d.norm());
+      const Vec3<double> u = rested.velocities()[j] - rested.velocities()[i];
+      fastest = std::max(fastest, std::abs(u.dot(d) / d.norm()));
+    }
+  }
+  CHECK(widest <= 4.2);
+  CHECK(fastest <= 0.1);
+  CHECK(total_contacts(rested) > 1000);
+
+  // One sphere on another in the pull towards the middle, with next to no rebound left: a named outcome.
+  ParticleSystem<double> two(unit_system("reduced"));
+  two.add("lower", 1, {0, 0, -1.0}, {0, 0, 0});
+  two.add("upper", 1, {0, 0, 1.0}, {0, 0, 0});
+  for (const Index i : {0, 1}) (i == 0 ? two.add_column<BodyRadius>() : two.column<BodyRadius>())[i] = 1;
+  Simulation<double> endless(
+      two, compose(sheet_of_spheres({}, {.restitution = 0, .minimum_rebound = 1e-30}), schemes::verlet), 0.1);
+  const Outcome outcome = endless.run(10);
+  CHECK_FALSE(outcome.ok());
+  CHECK(outcome.message.find("spheres pile up") != std::string::npos);
+}
+
+TEST_CASE("spheres that are none are refused, and others cost nothing", "[integrators][hard_spheres]") {
+  const auto refused = [](const HardSpheres& law, ParticleSystem<double> s) {
+    auto sheet = sheet_of_spheres({}, law);
+    sheet.bind(s);
+  };
+  const auto s = test::patch({});
+  CHECK_THROWS_WITH(refused({.restitution = 1.5}, s),
+                    "restitution = 1.5 is not a coefficient of restitution; a number from 0 to 1 is expected");
+  CHECK_THROWS_WITH(refused({.restitution = -0.1}, s),
+                    "restitution = -0.1 is not a coefficient of restitution; a number from 0 to 1 is expected");
+  CHECK_THROWS_WITH(
+      refused({.restitution = 0.3, .restitution_exponent = -0.2}, s),
+      "restitution_exponent = -0.2 needs the speed at which the coefficient is restitution; give restitution_speed");
+  auto negative = s;
+  negative.column<BodyRadius>()[3] = -0.5;
+  CHECK_THROWS_WITH(refused({}, negative), "the radius of '' is -0.5; 0 or more is expected");
+  auto none = s;
+  none.column<BodyRadius>().all().setZero();
+  CHECK_THROWS_WITH(refused({}, none), "no particle is a sphere; give at least one a radius");
+  auto small = s;
+  small.set_box(Box::periodic({3, 8, 8}));
+  CHECK_THROWS_WITH(refused({}, small), Catch::Contains("could meet two images of another one"));
+  ParticleSystem<double> overlapping(unit_system("reduced"));
+  overlapping.set_box(Box::periodic({10, 10, 10}));
+  overlapping.add("a", 1, {0.25, 0.25, 0}, {0, 0, 0});
+  overlapping.add("b", 1, {9.75, 9.75, 0}, {0, 0, 0});
+  for (const Index i : {0, 1})
+    (i == 0 ? overlapping.add_column<BodyRadius>() : overlapping.column<BodyRadius>())[i] = 0.5;
+  CHECK_THROWS_WITH(refused({}, overlapping), Catch::Contains("'a' and 'b' overlap: they are 0.7071"));
+  CHECK_THROWS_WITH(with_letter(HardSpheres{}, test::kinetic_potential(Gravity{})),
+                    Catch::Contains("hard spheres are those of 'shearing_sheet', not of 'kinetic_potential'"));
+  CHECK_THROWS_WITH(compose(sheet_of_spheres({}, {}), schemes::yoshida_4), Catch::Contains("irreversible"));
+  // A sheet that has no spheres has no columns of theirs.
+  ParticleSystem<double> points(unit_system("reduced"));
+  points.add("", 1, {0, 0, 0}, {0, 0, 0});
+  const std::size_t bytes = points.bytes_per_particle();
+  CHECK(test::run(test::sheet<double>({}), schemes::verlet, points, 0.1, 2).bytes_per_particle() == bytes);
+}
+
+TEST_CASE("no contact of a million is missed", "[integrators][hard_spheres][nightly]") {
+  // A thick patch, three spheres deep, over thousands of orbits: after every five steps no two spheres overlap, by a
+  // search through all pairs and images. Two that pass each other unseen overlap for several steps.
+  Composition<AnyHamiltonian<double>> integrator(sheet_of_spheres({}, {.restitution = 0.5}), schemes::verlet);
+  auto raw =
+      test::patch({.count = 120, .edges = {12, 10, 60}, .smallest = 0.4, .largest = 0.6, .thickness = 8, .speed = 1});
+  raw.clock() = Clock<double>::fixed(0, 0.05);
+  integrator.bind(raw);
+  auto now = raw;
+  double deepest = 0;
+  do {
+    integrator.advance(raw, {.steps = 5});
+    integrator.settle(raw, now, {}, std::nullopt, true);
+    deepest = std::max(deepest, deepest_overlap(now, 1));
+  } while (total_contacts(now) < 1e6);
+  CHECK(deepest <= 1e-10);
+}
+
+}  // namespace noether
