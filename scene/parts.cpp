@@ -68,6 +68,7 @@
 #include "monitors/pressure.hpp"
 #include "monitors/radial_distribution.hpp"
 #include "monitors/resonance_angle.hpp"
+#include "monitors/ring_monitors.hpp"
 #include "monitors/shadow_hamiltonian.hpp"
 #include "monitors/spin.hpp"
 #include "monitors/temperature.hpp"
@@ -258,6 +259,10 @@ Parts standard_parts() {
   parts.add_monitor<FieldMomentum>();
   parts.add_monitor<CanonicalMomentum>();
   parts.add_monitor<MagneticMoment>();
+  parts.add_monitor<VelocityDispersion>();
+  parts.add_monitor<FillingFactor>();
+  parts.add_monitor<Viscosity>();
+  parts.add_monitor<Wakes>();
   parts.add_monitor<ConstraintResidual>();
   parts.add_monitor<ShadowHamiltonian<double>>();
   parts.add_monitor<Megno<double>>();

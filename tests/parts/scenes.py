@@ -203,6 +203,9 @@ SPHERES = ("[particles]\nbox = [10, 8, 20]\n" +
            body("other", 2.0, (3.0, 1.0, 0.25), (-0.5, -4.5, 0.0), "radius = 0.75\n"))
 # What the second degree of the first leaves out, about its own axis.
 OWN_AXIS = "type = 'oblateness'; J4 = -0.05; radius = 0.2; axis = [0.1, 0.0, 1.0]; frame = 'body'; G = 1"
+SPHERES_IN_SHEET = ('[hamiltonian]\ntype = "shearing_sheet"\nOmega = 1\n' +
+                    table("hamiltonian.force", "type = 'hard_spheres'; restitution = 0.5") +
+                    table("hamiltonian.force", GRAVITY))
 
 HAMILTONIANS = {
     "kinetic_potential": Case(PLANETS, forces(GRAVITY)),
@@ -264,9 +267,7 @@ FORCES = {
     "tides": Case(ROCKS.replace("angular_velocity = [0.3", "love_number = 0.4\nradius = 0.2\ntide_lag = 0.01\nangular_velocity = [0.3"),
                   forces(PULL, "type = 'tides'; G = 1"), rivals=FORWARD),
     "linear_drag": Case(PAIR, forces(SPRING, "type = 'linear_drag'; rate = 0.1"), rivals=FORWARD),
-    "hard_spheres": Case(SPHERES, '[hamiltonian]\ntype = "shearing_sheet"\nOmega = 1\n' +
-                         table("hamiltonian.force", "type = 'hard_spheres'; restitution = 0.5") +
-                         table("hamiltonian.force", GRAVITY), rivals=FORWARD),
+    "hard_spheres": Case(SPHERES, SPHERES_IN_SHEET, rivals=FORWARD),
 }
 
 THERMOSTATS = {
@@ -443,6 +444,14 @@ MONITORS = {
                                      salt(LENNARD_JONES)),
     "velocity_autocorrelation": seen("type = 'velocity_autocorrelation'; length = 4; origins = 2; steps = {cadence}",
                                      salt(LENNARD_JONES)),
+    "velocity_dispersion": seen("type = 'velocity_dispersion'; Omega = 1; steps = {cadence}",
+                                Case(SPHERES, SPHERES_IN_SHEET, rivals=FORWARD)),
+    "filling_factor": seen("type = 'filling_factor'; steps = {cadence}",
+                           Case(SPHERES, SPHERES_IN_SHEET, rivals=FORWARD)),
+    "viscosity": seen("type = 'viscosity'; Omega = 1; G = 1; steps = {cadence}",
+                      Case(SPHERES, SPHERES_IN_SHEET, rivals=FORWARD)),
+    "wakes": seen("type = 'wakes'; Omega = 1; shortest = 4; steps = {cadence}",
+                  Case(SPHERES, SPHERES_IN_SHEET, rivals=FORWARD)),
     "variables": seen("type = 'variables'; variable = 'z'; steps = {cadence}", system("type = 'lorenz'", step=0.01)),
     "canonical_momentum": seen("type = 'canonical_momentum'; steps = {cadence}", Case(CHARGES, fields(SOLENOID))),
     "magnetic_moment": seen("type = 'magnetic_moment'; steps = {cadence}", Case(CHARGES, fields(SOLENOID))),
