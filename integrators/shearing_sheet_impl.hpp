@@ -23,6 +23,8 @@ template <class F, class Real> void ShearingSheet<F, Real>::bind(ParticleSystem<
     throw Error("shearing sheets in boxes are stepped one system at a time; run these systems one by one");
   }
   if constexpr (std::is_same_v<Real, double>) {
+    if (spheres_ && s.clock().dt() < 0)
+      throw Error("hard spheres cannot go back in time: what they lose is not known; a step above 0 is expected");
     if (spheres_) spheres_->bind(s, rates_);
   }
 }

@@ -5,6 +5,7 @@
 #include "scene/builders.hpp"
 #include "scene/foreign_names.hpp"
 #include "scene/ionic_crystal.hpp"
+#include "scene/ring_patch.hpp"
 #include "scene/water_box.hpp"
 
 #include <fmt/format.h>
@@ -29,9 +30,9 @@ template <class Builder> BuilderKind builder_kind() {
 }  // namespace
 
 const std::vector<BuilderKind>& builders() {
-  static const std::vector<BuilderKind> all = {builder_kind<Lattice>(),       builder_kind<Liquid>(),
-                                               builder_kind<PolymerChains>(), builder_kind<WaterBox>(),
-                                               builder_kind<IonicCrystal>(),  builder_kind<Block>()};
+  static const std::vector<BuilderKind> all = {
+      builder_kind<Lattice>(),      builder_kind<Liquid>(), builder_kind<PolymerChains>(), builder_kind<WaterBox>(),
+      builder_kind<IonicCrystal>(), builder_kind<Block>(),  builder_kind<RingPatch>()};
   return all;
 }
 

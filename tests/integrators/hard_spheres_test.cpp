@@ -406,6 +406,8 @@ TEST_CASE("spheres that are none are refused, and others cost nothing", "[integr
   CHECK_THROWS_WITH(with_letter(HardSpheres{}, test::kinetic_potential(Gravity{})),
                     Catch::Contains("hard spheres are those of 'shearing_sheet', not of 'kinetic_potential'"));
   CHECK_THROWS_WITH(compose(sheet_of_spheres({}, {}), schemes::yoshida_4), Catch::Contains("irreversible"));
+  CHECK_THROWS_WITH(test::run(sheet_of_spheres({}, {}), schemes::verlet, s, -0.1, 1),
+                    "hard spheres cannot go back in time: what they lose is not known; a step above 0 is expected");
   // A sheet that has no spheres has no columns of theirs.
   ParticleSystem<double> points(unit_system("reduced"));
   points.add("", 1, {0, 0, 0}, {0, 0, 0});

@@ -489,6 +489,8 @@ BUILDERS = {
                           forces("type = 'lennard_jones'; cutoff = 2.5", "type = 'reaction_field'; cutoff = 2.5"),
                           step=0.002),
     "block": Case(BLOCK, forces("type = 'hyperelastic'; lambda = 1; mu = 0.8")),
+    "ring_patch": Case("[particles]\ntype = 'ring_patch'\nsize = [10, 8, 20]\nOmega = 1\nsmallest = 0.4\nlargest = 0.8\n"
+                       "density = 0.5\noptical_depth = 0.1\n", SPHERES_IN_SHEET, rivals=FORWARD),
 }
 
 # A list that the program has of each kind, the table of cases for it, and what a page says of it.

@@ -1,0 +1,113 @@
+/// The builder of a patch of a ring: as many spheres as it should have, of the radii it should, nowhere in each other.
+
+#include "scene/ring_patch.hpp"
+#include "engine/sphere_columns.hpp"
+#include "integrators/shearing_sheet.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/ring_spheres.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace noether {
+namespace {
+
+/// A patch without overlaps: what a run refuses otherwise, and here a search by pairs.
+void check_room(const ParticleSystem<double>& s) {
+  const auto& radii = s.column<BodyRadius>();
+  double nearest = 2;
+  for (Index i = 0; i < s.size(); ++i) {
+    for (Index j = 0; j < i; ++j) {
+      const Vec3<double> d = s.box().minimum_image(Vec3<double>(s.positions()[i] - s.positions()[j]));
+      nearest = std::min(nearest, d.norm() / (radii[i] + radii[j]));
+    }
+    CHECK(std::abs(s.unwrapped(i)[2]) + radii[i] <= s.box().edges()[2] / 2 * (1 + 1e-12));
+  }
+  CHECK(nearest >= 1);
+  auto copy = s;
+  auto sheet = test::sheet_of_spheres({}, {});
+  sheet.bind(copy);
+}
+
+double mass_of(const ParticleSystem<double>& s) { return s.masses().all().sum(); }
+
+}  // namespace
+
+TEST_CASE("a patch of a ring has its surface density, radii and velocities", "[ring_patch]") {
+  const RingPatch wanted{.size = {60, 40, 40},
+                         .Omega = 0.5,
+                         .smallest = 0.25,
+                         .largest = 2,
+                         .exponent = 3,
+                         .density = 0.5,
+                         .surface_density = 0.4,
+                         .dispersion = 0.3,
+                         .seed = 7};
+  const auto s = wanted.build();
+  check_room(s);
+  const double biggest = 4 * std::numbers::pi / 3 * 8 * 0.5;
+  CHECK(mass_of(s) >= 0.4 * 2400);
+  CHECK(mass_of(s) <= 0.4 * 2400 + biggest);
+  REQUIRE(s.size() > 700);
+  // The share of radii below r is (1 - (r/a)^-2)/(1 - (b/a)^-2); Kolmogorov's distance stays below 1.63/sqrt(n), once
+  // in a hundred seeds not. Dispersions have errors of 1/sqrt(2 n).
+  std::vector<double> radii(s.column<BodyRadius>().begin(), s.column<BodyRadius>().end());
+  std::sort(radii.begin(), radii.end());
+  const auto n = static_cast<double>(radii.size());
+  double distance = 0;
+  for (std::size_t k = 0; k < radii.size(); ++k) {
+    const double share = (1 - std::pow(radii[k] / 0.25, -2)) / (1 - std::pow(8, -2));
+    distance = std::max(distance, std::abs(share - (static_cast<double>(k) + 0.5) / n));
+  }
+  CHECK(distance <= 1.63 / std::sqrt(n));
+  Vec3<double> momentum(0, 0, 0), squares(0, 0, 0);
+  for (Index i = 0; i < s.size(); ++i) {
+    Vec3<double> u = s.velocities()[i];
+    u[1] += 0.75 * s.unwrapped(i)[0];
+    momentum += s.masses()[i] * u;
+    squares += u.cwiseProduct(u);
+    const double r = s.column<BodyRadius>()[i];
+    CHECK(std::abs(s.masses()[i] - 4 * std::numbers::pi / 3 * r * r * r * 0.5) <= 1e-14 * s.masses()[i]);
+  }
+  CHECK(momentum.cwiseAbs().maxCoeff() <= 1e-10 * mass_of(s));
+  for (int k = 0; k < 3; ++k) CHECK(std::abs(std::sqrt(squares[k] / n) / 0.3 - 1) <= 4 / std::sqrt(2 * n));
+}
+
+TEST_CASE("patches are thin and thick, of spheres alike and over a factor of 100", "[ring_patch]") {
+  const auto thin = RingPatch{.size = {100, 100, 40}, .smallest = 0.5, .density = 1, .optical_depth = 0.01}.build();
+  check_room(thin);
+  CHECK(thin.size() == 128);  // 0.01 100 100/(pi/4) = 127.3
+  const auto thick = RingPatch{.size = {10, 8, 60}, .smallest = 0.5, .density = 1, .optical_depth = 3}.build();
+  check_room(thick);
+  CHECK(thick.size() == 306);  // 305.6
+  const auto wide =
+      RingPatch{.size = {40, 30, 60}, .smallest = 0.05, .largest = 5, .exponent = 2.5, .density = 1, .particles = 600}
+          .build();
+  check_room(wide);
+  CHECK(wide.size() == 600);
+  CHECK(wide.column<BodyRadius>()[0] > 20 * wide.column<BodyRadius>()[599]);
+}
+
+TEST_CASE("patches that cannot be are refused", "[ring_patch]") {
+  const RingPatch good{.size = {10, 8, 20}, .smallest = 0.5, .density = 1, .optical_depth = 0.2};
+  const auto refused = [](RingPatch patch, const auto& change) {
+    change(patch);
+    static_cast<void>(patch.build());
+  };
+  CHECK_THROWS_WITH(refused(good, [](RingPatch& p) { p.optical_depth.reset(); }),
+                    "none is given of surface_density, optical_depth and particles; give one of them");
+  CHECK_THROWS_WITH(refused(good, [](RingPatch& p) { p.particles = 4; }),
+                    "more than one is given of surface_density, optical_depth and particles; give one of them");
+  CHECK_THROWS_WITH(refused(good, [](RingPatch& p) { p.largest = 0.25; }),
+                    "largest = 0.25 is below the smallest radius, 0.5");
+  CHECK_THROWS_WITH(refused(good, [](RingPatch& p) { p.smallest = 0; }),
+                    "smallest = 0 is not a valid radius; a number above 0 is expected");
+  CHECK_THROWS_WITH(refused(good, [](RingPatch& p) { p.size[1] = -8; }),
+                    Catch::Contains("is not a box; three lengths above 0 are expected"));
+  CHECK_THROWS_WITH(refused(good, [](RingPatch& p) { p.optical_depth = 30; }),
+                    Catch::Contains("has no room for spheres of all 3056 radii without overlaps; make it larger"));
+}
+
+}  // namespace noether
