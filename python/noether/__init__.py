@@ -33,11 +33,12 @@ _HOMES = {
     "Particles": "particles", "Body": "particles",
     "Scene": "scenes", "run": "scenes", "compare": "scenes", "advise": "scenes", "stability": "scenes", "explain": "scenes",
     "evaluate": "scenes", "example": "scenes", "examples": "scenes", "Report": "reports",
+    "ensemble": "ensembles", "open_ensemble": "ensembles", "merge": "ensembles",
     "verify": "files", "convert": "files", "info": "files", "view": "files", "open_run": "reports",
     "from_rebound": "rebound", "force_signature": "functions",
 }
-_MODULES = ("bodies", "plots", "files", "reports", "rebound", "quantities", "parts", "particles", "scenes", "simulation",
-            "viewer", "functions")
+_MODULES = ("bodies", "plots", "files", "reports", "rebound", "quantities", "parts", "particles", "scenes", "ensembles",
+            "simulation", "viewer", "functions")
 
 
 def __getattr__(name):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 
@@ -26,8 +27,6 @@ def program():
 
 def main():
     """The command `noether` of an installed package: the program, with the arguments of this process."""
-    import signal
-
     # As programs start. Python holds an interrupt back until its own code runs on, and makes errors of closed pipes.
     for number in (signal.SIGINT, signal.SIGPIPE):
         signal.signal(number, signal.SIG_DFL)
@@ -38,16 +37,27 @@ _ERRORS = {2: _core.Error, 3: _core.FileError}
 
 
 def _ask(*arguments):
-    """What the program prints as JSON. @raise Error or FileError with its message"""
-    done = subprocess.run([*program(), *[os.fspath(one) for one in arguments], "--json"], capture_output=True, text=True)
-    lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
+    """What the program prints as JSON, and its exit code. Ctrl-C ends the program as it ends by itself: by its first signal, with
+    what it has done kept. @raise Error or FileError with its message"""
+    command = [*program(), *[os.fspath(one) for one in arguments], "--json"]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as asked:
+        try:
+            out, said = asked.communicate()
+        except KeyboardInterrupt:
+            try:
+                asked.wait(0.3)  # a terminal has told it too
+            except subprocess.TimeoutExpired:
+                asked.send_signal(signal.SIGINT)
+            asked.communicate()
+            raise
+    lines = [line for line in out.splitlines() if line.startswith("{")]
     told = json.loads(lines[-1]) if lines else {}
     if lines and told["schema"] != "noether.error/1":
-        return told, done.returncode
-    message = done.stderr.strip() or f"noether {arguments[0]} ended with code {done.returncode}"
+        return told, asked.returncode
+    message = said.strip() or f"noether {arguments[0]} ended with code {asked.returncode}"
     if "message" in told:
         message = ": ".join(str(one) for one in (told["file"], told["message"]) if one)
-    raise _ERRORS.get(done.returncode, RuntimeError)(message)
+    raise _ERRORS.get(asked.returncode, RuntimeError)(message)
 
 
 def verify(run, *, against=None, repair=False):

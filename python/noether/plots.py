@@ -7,6 +7,7 @@ is one clear error. `plot` chooses by what there is. `plt.style.use(nt.plots.STY
 import math
 
 from . import _core
+from .chaos_plots import ensemble, lyapunov, megno, resonance_angles  # noqa: F401 ensemble is for users
 from .drawing import (  # noqa: F401 STYLE is for users
     COLOURS, MARKS, INK, SOFT, STYLE, MOST_NAMES, styled, axes_of, run_of, monitors_of, series_of, frames_of, units_of,
     with_unit, length_scale, is_logarithmic, against_time, legend, decades, places_of)
@@ -317,15 +318,20 @@ def _choices(run):
             frames.velocities is not None):
         chosen += ["a", "e", "inc"]
     chosen += [one for one in ("radial_distribution", "mean_square_displacement", "velocity_autocorrelation") if one in have]
-    return chosen + [one for one in ("temperature", "pressure") if one in have]
+    chosen += [one for one in ("temperature", "pressure") if one in have]
+    return chosen + [one for one, monitor in _CHAOS.items() if monitor in have]
+
+
+_CHAOS = {"resonance_angles": "resonance_angle", "megno": "megno", "lyapunov": "lyapunov"}
 
 
 def plot(run, *, what=None, ax=None):
     """What fits the run, side by side: orbits, variables or positions, errors of the energy, elements, g(r), displacements,
-    temperature and pressure.
+    temperature and pressure, angles of resonances, MEGNO and Lyapunov exponents.
 
     what : a list of these: "orbits", "positions", "variables", "energies", "a", "e", "inc", "radial_distribution",
-        "mean_square_displacement", "velocity_autocorrelation", or names of other monitors; default: by what there is
+        "mean_square_displacement", "velocity_autocorrelation", "resonance_angles", "megno", "lyapunov", or names of other
+        monitors; default: by what there is
     ax : draws the first of them alone, into these axes
 
     @return an array of axes; with `ax`, that
@@ -363,7 +369,8 @@ def _draw(run, name, ax):
         return elements(run, quantities=name, ax=ax)
     own = {"orbits": orbits, "positions": positions, "variables": variables, "energies": energies,
            "radial_distribution": radial_distribution, "mean_square_displacement": mean_square_displacement,
-           "velocity_autocorrelation": velocity_autocorrelation}
+           "velocity_autocorrelation": velocity_autocorrelation, "resonance_angles": resonance_angles, "megno": megno,
+           "lyapunov": lyapunov}
     if name in own:
         return own[name](run, ax=ax)
     return monitor(run, name, ax=ax)
