@@ -121,18 +121,20 @@ void add_plot_command(CLI::App& app, const Parts& parts, int& exit_code) {
     std::optional<std::int64_t> frame;
     bool json = false;
   };
-  CLI::App* command =
-      app.add_subcommand("plot", "draw a run: orbits or a liquid, errors, elements, g(r) ... (needs gnuplot)");
+  CLI::App* command = app.add_subcommand(
+      "plot", "draw a run or an ensemble: orbits or a liquid, errors, elements, g(r), maps ... (needs gnuplot)");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "a run.h5")
+  command->add_option("FILE", options->file, "a run.h5, or the file of an ensemble")
       ->required()
       ->check([](const std::string& file) { return std::string(file.empty() ? "the name of the file is empty" : ""); })
       ->type_name("");
   command->add_option("--out", options->out, "the picture, .svg, .png or .pdf; default: FILE with .svg")
       ->type_name("PICTURE");
   command
-      ->add_option("--what", options->what,
-                   fmt::format("a list of {}; default: what fits the run", fmt::join(plot_subjects(), ", ")))
+      ->add_option(
+          "--what", options->what,
+          fmt::format("a list of {}; of an ensemble figures of its table, such as megno_mean; default: what fits",
+                      fmt::join(plot_subjects(), ", ")))
       ->type_name("A,B,...");
   command
       ->add_option("--projection", options->projection,

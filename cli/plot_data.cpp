@@ -4,6 +4,7 @@
 #include "cli/run_caption.hpp"
 #include "cli/run_gravity.hpp"
 #include "engine/sums.hpp"
+#include "io/ensemble_file.hpp"
 #include "io/frame_particles.hpp"
 #include "io/sandbox.hpp"
 #include "io/trajectory_layout.hpp"
@@ -316,6 +317,7 @@ const std::vector<std::string>& plot_subjects() {
 }
 
 PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts, const PlotOptions& options) {
+  if (io::holds_ensemble(file)) return plot_ensemble(file, parts, options);
   check(options);
   const PlotSource source = read_source(file, options, parts);
   const bool periodic = source.frames.periodic;

@@ -98,12 +98,21 @@ struct PlotAxis {
   bool logarithmic = false;
 };
 
+/// Colors that tell a third number of the points of a panel's only curve.
+struct PlotColors {
+  std::vector<double> values;  ///< of each point; NaN where there is none
+  PlotAxis scale = {};         ///< beyond its ends colors are those of the ends
+  bool cells = false;          ///< points are those of a grid with equal distances, and are drawn as its cells
+};
+
 /// Curves over one axis: errors, elements, temperature, g(r), variables.
 struct PlotPanel {
   std::string title;
   PlotAxis x, y;
   std::vector<PlotCurve> curves;
-  bool large = false;  ///< stands where orbits would
+  bool large = false;         ///< stands where orbits would
+  bool points_alone = false;  ///< of a large one: no line joins them
+  std::optional<PlotColors> colors = {};
 };
 
 /// A line of the legend: a color and what has it.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double square_size = 430, title_height = 62, legend_row = 20;
 constexpr double large_box = 560, alone_width = 470, column_width = 330, least_height = 150, between_rows = 78,
-                 between_views = 62;
+                 between_views = 62, bar_room = 108;
 constexpr double left_margin = 74, right_margin = 30, bottom_margin = 58, panel_gap = 74, column_gap = 76;
 
 /// Width and height of everything that is seen in space.
@@ -43,7 +43,7 @@ Extent space_of(const PlotData& data, double box) {
   for (const PlotOrbits& picture : data.orbits) add(extent_of(picture));
   for (std::size_t k = 0; k < data.boxes.size(); ++k) add({box, box});
   for (const PlotPanel& panel : data.panels) {
-    if (panel.large) add({square_size, square_size});
+    if (panel.large) add({square_size + (panel.colors ? bar_room : 0), square_size});
   }
   return all;
 }
@@ -121,8 +121,9 @@ double PlotLayout::place_space(const PlotData& data, double left, double top) {
   }
   for (PlotArea& area : boxes_) area = {left, top - box_size_, box_size_, box_size_}, left += box_size_ + panel_gap;
   for (std::size_t k = 0; k < panels_.size(); ++k) {
-    if (data.panels[k].large)
-      panels_[k] = {left, top - square_size, square_size, square_size}, left += square_size + panel_gap;
+    if (!data.panels[k].large) continue;
+    panels_[k] = {left, top - square_size, square_size, square_size};
+    left += square_size + panel_gap + (data.panels[k].colors ? bar_room : 0);
   }
   return left;
 }

@@ -20,6 +20,10 @@ namespace {
 constexpr std::array<std::uint32_t, 12> palette = {0x0077BB, 0xEE7733, 0x009988, 0xCC3311, 0xAA3377, 0x33BBEE,
                                                    0x997700, 0x228833, 0xEE3377, 0x4477AA, 0x66443F, 0x777777};
 constexpr std::uint32_t central = 0xE0A800;
+/// From low to high, equal steps for the eye, and for those who see few colors (S. van der Walt and N. Smith,
+/// "viridis").
+constexpr std::array<std::uint32_t, 9> scale_of_colors = {0x440154, 0x472D7B, 0x3B528B, 0x2C728E, 0x21918C,
+                                                          0x28AE80, 0x5EC962, 0xADDC30, 0xFDE725};
 /// Bonds are drawn between particles of so many layers of depth.
 constexpr int layers = 24;
 /// More particles than this are plain dots: their edges and lights could not be seen.
@@ -322,12 +326,48 @@ class Script {
     return axis.label;
   }
 
+  /// The bar of colors beside a panel.
+  void add_scale(const PlotAxis& scale, const PlotArea& area) {
+    std::string colors;
+    for (std::size_t k = 0; k < scale_of_colors.size(); ++k)
+      colors += fmt::format("{}{} '#{:06X}'", k == 0 ? "" : ", ", k, scale_of_colors[k]);
+    text_ += fmt::format("set palette defined ({})\nset cbrange [{:.15g}:{:.15g}]\n", colors, scale.low, scale.high);
+    const PlotMarks marks =
+        scale.logarithmic ? PlotMarks{} : marks_of(scale.low, scale.high, most_marks('y', area.high));
+    std::string list;
+    for (const auto& [at, text] : marks.marks)
+      list += fmt::format("{}'{}' {:.15g}", list.empty() ? "" : ", ", text, at);
+    text_ += fmt::format("{}set logscale cb\nset format cb '%g'\nset cbtics {}\n", scale.logarithmic ? "" : "un",
+                         list.empty() ? "autofreq" : "(" + list + ")");
+    const std::string label = axis_name(scale.label, marks);
+    text_ += fmt::format(
+        "set cblabel {} noenhanced\nset colorbox vertical user origin screen {:.5f},{:.5f} size screen "
+        "{:.5f},{:.5f} noborder\n",
+        quoted(label), (area.left + area.wide + 14) / layout_.width(), area.low / layout_.height(),
+        14 / layout_.width(), area.high / layout_.height());
+  }
+
+  /// Cells or points whose colors tell a number.
+  void add_colored(const PlotPanel& panel, const PlotArea& area, std::size_t k) {
+    add_scale(panel.colors->scale, area);
+    const std::vector<PlotPoint>& points = panel.curves.front().points;
+    text_ += fmt::format("$c{} << EOD\n", k);
+    for (std::size_t p = 0; p < points.size(); ++p)
+      text_ += fmt::format("{:.15g} {:.15g} {:.9g}\n", points[p].x, points[p].y, panel.colors->values[p]);
+    text_ += "EOD\nunset key\nunset grid\n";
+    const double size = std::clamp(9 / std::sqrt(static_cast<double>(points.size())), 0.25, 0.9);
+    plot({panel.colors->cells ? fmt::format("$c{} using 1:2:3 with image", k)
+                              : fmt::format("$c{} using 1:2:3 with points pt 7 ps {:.2f} lc palette", k, size)});
+    text_ += frame() + "unset colorbox\n";
+  }
+
   void add_panel(std::size_t k) {
     const PlotPanel& panel = data_.panels[k];
     const PlotArea& area = layout_.panel(k);
     text_ += margins(area);
     const std::string across = add_axis(panel.x, 'x', area.wide), up = add_axis(panel.y, 'y', area.high);
     add_titles(area, panel.title, across, up);
+    if (panel.colors) return add_colored(panel, area, k);
     const bool key =
         std::any_of(panel.curves.begin(), panel.curves.end(), [](const auto& c) { return !c.name.empty(); });
     text_ += key ? "set key inside top right horizontal samplen 0.3 width 1 Left reverse noenhanced\n" : "unset key\n";
@@ -340,7 +380,7 @@ class Script {
       text_ += block(name, curve.points);
       const std::string style = style_of(curve, panel);
       curves.push_back(fmt::format("${} {} lc rgb '{}' notitle", name, style, color));
-      if (panel.large) {
+      if (panel.large && !panel.points_alone) {
         text_ += block(name + "e", std::vector<PlotPoint>{curve.points.back()});
         curves.push_back(fmt::format("${}e with points pt 7 ps 0.9 lc rgb '{}' notitle", name, color));
       }
@@ -353,6 +393,7 @@ class Script {
   }
 
   static std::string style_of(const PlotCurve& curve, const PlotPanel& panel) {
+    if (panel.points_alone) return "with points pt 7 ps 0.5";
     if (panel.large) return curve.dotted ? "with linespoints lw 1.3 pt 7 ps 0.35" : "with lines lw 1.3";
     const std::size_t count = curve.points.size();
     if (curve.separate && count > 400) return "with points pt 7 ps 0.2";

@@ -79,6 +79,10 @@ std::vector<PlotPanel> plot_resonances(const PlotSource& source);
 std::vector<PlotPanel> plot_chaos(const PlotSource& source);
 /// The histogram of dihedral angles over the run, from a monitor.
 std::optional<PlotPanel> plot_dihedrals(const PlotSource& source);
+/// Figures of the members of an ensemble, one panel each: over the first two keys that vary in color, over one key
+/// against it. @param options  `what` are columns of the table: "megno_mean", "elements_value.Saturn.e"
+/// @throws FileError; Error  for figures that the table does not have
+PlotData plot_ensemble(const std::filesystem::path& file, const Parts& parts, const PlotOptions& options);
 
 /// g(r) by pair of types where there are few types, each a mean of frames, up to half of the shortest edge.
 /// @param molecules  the number of each particle's; pairs within one are left out. Empty: all pairs count
