@@ -21,10 +21,11 @@ for ax, table, monitor, name in ((axes[0, 0], trojans, "resonance_angle", "Troja
     amplitude = np.degrees(np.minimum(table[f"{monitor}_amplitude"], np.pi))
     print(f"{name}: {int((amplitude < 180).sum())} of {amplitude.size} librate")
     nt.plots.ensemble(table.assign(amplitude=amplitude.assign_attrs(units="deg")), "amplitude", limits=(0, 180), ax=ax)
+    ax.set_title(name)
 for ax, monitor, until, low in ((axes[1, 0], "resonance_angle", 2, -180), (axes[1, 1], "resonance_angle_2", 60, 0)):
     series = run.series(monitor)
     time, angle = series.time / 365250, (np.degrees(series.value) - low) % 360 + low
-    ax.plot(time[time < until], angle[time < until], ".", ms=3, mew=0)
+    ax.plot(time[time < until], angle[time < until], lw=1)
     ax.set_ylim(low, low + 360)
     ax.set_yticks(range(low, low + 361, 90))
     ax.set_xlabel("time (kyr)")

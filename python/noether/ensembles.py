@@ -63,12 +63,10 @@ def _words(scene, vary, members, seed, changes, until, simd, out):
         if read._functions:
             raise _core.Error("functions of Python cannot go along to the members of an ensemble; take a part of noether, or run "
                               "the members by nt.run")
-        path, lines, scene_file = read._source, read._set_lines, None
-        if not isinstance(path, str):
-            path, lines = "scene.toml", []
-    name = os.fspath(out) if out is not None else _default_file(path)
-    if not isinstance(scene, (str, os.PathLike)) and path == "scene.toml":
-        path = scene_file = os.path.abspath(os.path.basename(name) + ".scene.toml")  # here, as what it names is
+        path, lines, scene_file = (read._source, read._set_lines, None) if isinstance(read._source, str) else (None, [], None)
+    name = os.fspath(out) if out is not None else _default_file(path or "scene.toml")
+    if path is None:  # a dict: its file stands here, as files that it names do
+        path = scene_file = os.path.abspath(os.path.basename(name) + ".scene.toml")
         with open(scene_file, "w", encoding="utf-8") as file:
             file.write(read.toml)
     words = ["ensemble", os.path.abspath(path), "--out", os.path.abspath(name)]
