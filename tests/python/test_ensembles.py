@@ -2,6 +2,8 @@
 
 import concurrent.futures
 import os
+import pathlib
+import runpy
 import shutil
 import subprocess
 import sys
@@ -10,6 +12,7 @@ import numpy
 import pytest
 
 import noether as nt
+from conftest import nightly
 
 pytest.importorskip("h5py")
 pytest.importorskip("xarray")
@@ -222,6 +225,18 @@ def test_what_is_wrong_is_one_line(scene):
         nt.open_ensemble("planets.toml")
     with pytest.raises(nt.FileError, match="this is not the table of an ensemble"):
         nt.open_ensemble(nt.run(scene, out="one").files.trajectory)
+
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
+
+
+@nightly
+@pytest.mark.parametrize("example", sorted(one.parent.name for one in EXAMPLES.glob("*/draw.py")))
+def test_scripts_of_examples_print_what_their_pages_say_and_draw(example, matplotlib, capsys):
+    runpy.run_path(str(EXAMPLES / example / "draw.py"))
+    told = capsys.readouterr().out
+    assert told and f"\n```\n{told}```\n" in (EXAMPLES / example / "README.md").read_text()
+    assert os.path.getsize(f"{example}.png") > 10_000
 
 
 # ---- pictures ---------------------------------------------------------------------------------------------------------
