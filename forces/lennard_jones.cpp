@@ -4,6 +4,7 @@
 #include "forces/lennard_jones_simd.hpp"
 #include "forces/pair_chunk_simd.hpp"
 #include "forces/pair_groups.hpp"
+#include "neighbors/subset_list.hpp"
 
 #include <fmt/format.h>
 
@@ -106,6 +107,25 @@ std::ptrdiff_t only_row(const std::vector<LennardJonesRow>& rows) {
   return other == rows.end() ? std::min(first - rows.begin(), static_cast<std::ptrdiff_t>(rows.size()) - 1) : -1;
 }
 
+/// The particles that act, in a list of their own, where these are half of all at most and each acts on each other;
+/// null where that is not so.
+SubsetList* subset_of(ForceSink<double>& out, const ParticleSystem<double>& s, const detail::LennardJonesTable& table) {
+  if (std::all_of(table.rows.begin(), table.rows.end(), has_depth)) return nullptr;
+  std::vector<std::uint8_t> acts(at(table.types));
+  for (int a = 0; a < table.types; ++a) {
+    const auto row = table.rows.begin() + a * table.types;
+    acts[at(a)] = std::any_of(row, row + table.types, has_depth) ? 1 : 0;
+  }
+  for (int a = 0; a < table.types; ++a) {
+    for (int b = 0; b < table.types; ++b) {
+      if (acts[at(a)] != 0 && acts[at(b)] != 0 && !has_depth(table.rows[at(a * table.types + b)])) return nullptr;
+    }
+  }
+  auto& subset = out.workspace().get<SubsetList>();
+  subset.choose(s, acts);
+  return 2 * subset.size() <= s.size() ? &subset : nullptr;
+}
+
 /// The pairs of types that have a depth, where not all have one; null: all.
 const NeighborSelection* selection_of(ForceSink<double>& out, const NeighborList& list,
                                       const detail::LennardJonesTable& table) {
@@ -114,6 +134,34 @@ const NeighborSelection* selection_of(ForceSink<double>& out, const NeighborList
   selection.update(list, table.types, [&](int a, int b) { return has_depth(table.rows[at(a * table.types + b)]); });
   return &selection;
 }
+
+/// The pairs that can act, from the shared list or, where there is none, one made here, or from one of those alone that
+/// act.
+class ActingPairs {
+ public:
+  ActingPairs(ForceSink<double>& out, const ParticleSystem<double>& s, const detail::LennardJonesTable& table,
+              double range)
+      : out_(out), s_(s), table_(table), range_(range), subset_(subset_of(out, s, table)) {}
+
+  detail::ListedPairs up_to_date(NeighborList::Numbers numbers) {
+    if (subset_ != nullptr) {
+      subset_->update(s_, range_, out_.neighbors(), numbers);
+      return {.list = subset_->list(), .indices = {subset_->members()}};
+    }
+    if (out_.neighbors() == nullptr && !own_) own_.emplace(range_);
+    NeighborList& list = own_ ? *own_ : *out_.neighbors();
+    list.update(s_, numbers);
+    return {.list = list, .selection = selection_of(out_, list, table_)};
+  }
+
+ private:
+  ForceSink<double>& out_;
+  const ParticleSystem<double>& s_;
+  const detail::LennardJonesTable& table_;
+  double range_;
+  SubsetList* subset_;
+  std::optional<NeighborList> own_;
+};
 
 }  // namespace
 
@@ -262,16 +310,17 @@ void end_pairs_of_types(const detail::LennardJonesTable& table, const double* re
 
 /// The styles of other programs go through the lanes of any pair potential.
 void LennardJonesForce::add_ended(ForceSink<double>& out, const ParticleSystem<double>& s,
-                                  const detail::LennardJonesTable& known, NeighborList& list) const {
-  list.update(s);
+                                  const detail::LennardJonesTable& known) const {
+  ActingPairs acting(out, s, known, cutoff);
+  const detail::ListedPairs pairs = acting.up_to_date(NeighborList::Numbers::doubles);
   const PairChunkKernels& kernels = pair_chunk_kernels();
   const std::size_t all = out.wants_energy() || out.wants_virial() ? 1 : 0;
   const auto quick = kernels.add[0][all], careful = kernels.add[1][all];
-  const PairFilter filter{list.records(), cutoff * cutoff, 0, known.force_unit, known.energy_unit, nullptr, 0};
+  const PairFilter filter{pairs.list.records(), cutoff * cutoff, 0, known.force_unit, known.energy_unit, nullptr, 0};
   const detail::PairLimits limits{cutoff, 0, detail::strongest_pair * known.force_unit, "Lennard-Jones"};
   const detail::PairLoop loop = detail::pair_loop<detail::LennardJonesOfRow>(cutoff_style);
   detail::add_pair_groups(
-      out, s, list, {known.force_unit, known.energy_unit}, limits,
+      out, s, pairs, {known.force_unit, known.energy_unit}, limits,
       [&](const PairGroup& group, PairSums& found, bool care) {
         PairChunk chunk;
         std::memset(&found, 0, sizeof found);
@@ -286,21 +335,20 @@ void LennardJonesForce::add_ended(ForceSink<double>& out, const ParticleSystem<d
           }
           (care ? careful : quick)(filter, chunk, found);
         }
-      },
-      selection_of(out, list, known));
+      });
   detail::add_special_pairs(out, s, terms_of(s), limits);
   add_tail(out, s);
 }
 
 void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const {
   const detail::LennardJonesTable& known = table_for(s.shared_topology(), s.size());
-  std::optional<NeighborList> own;
-  NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(cutoff);
-  if (!known.ended.empty()) return add_ended(out, s, known, list);
+  if (!known.ended.empty()) return add_ended(out, s, known);
   const bool mixed = precision == PairPrecision::mixed, sums = out.wants_energy() || out.wants_virial();
-  if (mixed) list.update(s, NeighborList::Numbers::whole);
-  if (!mixed || sums) list.update(s);
-  const NeighborSelection* const selection = selection_of(out, list, known);
+  ActingPairs acting(out, s, known, cutoff);
+  if (mixed && sums) static_cast<void>(acting.up_to_date(NeighborList::Numbers::doubles));
+  const detail::ListedPairs pairs =
+      acting.up_to_date(mixed ? NeighborList::Numbers::whole : NeighborList::Numbers::doubles);
+  const NeighborList& list = pairs.list;
   const LennardJonesKernels& kernels = lennard_jones_kernels();
   const auto style = static_cast<std::size_t>(known.style), many = static_cast<std::size_t>(known.only_row < 0);
   const std::ptrdiff_t first_row = std::max<std::ptrdiff_t>(known.only_row, 0);
@@ -318,17 +366,15 @@ void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<d
                         mixed_careful = mixed_kernels.careful[style][many];
     const MixedPairField whole{list.whole_records(), table_in_use.rows.data() + first_row, known.types,
                                table_in_use.inverse2_unit};
-    detail::add_pair_groups(
-        out, s, list, {table_in_use.force_unit, known.energy_unit}, limits,
-        [&](const PairGroup& group, PairSums& found, bool care) {
-          if (sums) sum_doubles(group, found, care);  // for energies and virials
-          const bool close = sums && found.close;
-          (care ? mixed_careful : mixed_quick)(whole, group, found);
-          found.close = found.close || close;
-        },
-        selection);
+    detail::add_pair_groups(out, s, pairs, {table_in_use.force_unit, known.energy_unit}, limits,
+                            [&](const PairGroup& group, PairSums& found, bool care) {
+                              if (sums) sum_doubles(group, found, care);  // for energies and virials
+                              const bool close = sums && found.close;
+                              (care ? mixed_careful : mixed_quick)(whole, group, found);
+                              found.close = found.close || close;
+                            });
   } else {
-    detail::add_pair_groups(out, s, list, {known.force_unit, known.energy_unit}, limits, sum_doubles, selection);
+    detail::add_pair_groups(out, s, pairs, {known.force_unit, known.energy_unit}, limits, sum_doubles);
   }
   detail::add_special_pairs(out, s, terms_of(s), limits);
   add_tail(out, s);

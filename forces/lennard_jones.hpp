@@ -172,8 +172,7 @@ struct LennardJonesForce {
   void check_types(const Topology* topology, const Box& box) const;
   const detail::LennardJonesTable& table_for(const std::shared_ptr<const Topology>& topology, Index n) const;
   const detail::LennardJonesMixedTable& mixed_table_for(double spacing) const;
-  void add_ended(ForceSink<double>& out, const ParticleSystem<double>& s, const detail::LennardJonesTable& known,
-                 NeighborList& list) const;
+  void add_ended(ForceSink<double>& out, const ParticleSystem<double>& s, const detail::LennardJonesTable& known) const;
   void add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const;
   template <class Real> auto terms_of(const ParticleSystem<Real>& s) const;
   template <class Real> void add_tail(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;

@@ -175,7 +175,7 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
                           plan.coulomb_constant != 0 ? charges_of_records(s, list) : nullptr,
                           plan.coulomb_constant};
   add_pair_groups(
-      out, s, list, {force_unit, energy_unit}, limits_of(plan),
+      out, s, {list, selection}, {force_unit, energy_unit}, limits_of(plan),
       [&](const PairGroup& group, PairSums& found, bool care) {
         PairChunk chunk;
         std::memset(&found, 0, sizeof found);
@@ -185,8 +185,7 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
           plan.loop(plan.potential, plan.end, {chunk.r2, chunk.product, 8 * chunk.rows}, chunk.energy, chunk.force);
           (care ? careful : quick)(filter, chunk, found);
         }
-      },
-      selection);
+      });
 }
 
 void add_charges_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s, const PairPlan& plan,
@@ -211,7 +210,7 @@ void add_charges_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& 
   const auto sum_doubles = [&](const PairGroup& group, PairSums& found, bool care) {
     (care ? careful : quick)(field, group, found);
   };
-  if (!mixed) return add_pair_groups(out, s, list, {force_unit, energy_unit}, limits, sum_doubles, selection);
+  if (!mixed) return add_pair_groups(out, s, {list, selection}, {force_unit, energy_unit}, limits, sum_doubles);
   const double spacing = list.whole_spacing(), unit = std::ldexp(1.0, std::ilogb(plan.cutoff));
   const double mixed_unit = std::ldexp(force_unit, bits_of_mixed_unit);
   const ChargeSeries scaled = in_unit(series, unit);
@@ -220,15 +219,13 @@ void add_charges_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& 
                                 strongest / (0x1.8p27 * mixed_unit * unit * unit)};
   const ChargedPairMixedKernels& mixed_kernels = charged_pair_mixed_kernels();
   const auto mixed_quick = mixed_kernels.quick[kind], mixed_careful = mixed_kernels.careful[kind];
-  add_pair_groups(
-      out, s, list, {mixed_unit, energy_unit}, limits,
-      [&](const PairGroup& group, PairSums& found, bool care) {
-        if (sums) sum_doubles(group, found, care);  // for energies and virials
-        const bool close = sums && found.close;
-        (care ? mixed_careful : mixed_quick)(whole, group, found);
-        found.close = found.close || close;
-      },
-      selection);
+  add_pair_groups(out, s, {list, selection}, {mixed_unit, energy_unit}, limits,
+                  [&](const PairGroup& group, PairSums& found, bool care) {
+                    if (sums) sum_doubles(group, found, care);  // for energies and virials
+                    const bool close = sums && found.close;
+                    (care ? mixed_careful : mixed_quick)(whole, group, found);
+                    found.close = found.close || close;
+                  });
 }
 
 }  // namespace noether::detail

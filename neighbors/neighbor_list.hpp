@@ -44,6 +44,7 @@ class NeighborList {
   ~NeighborList() = default;
 
   double range() const { return range_; }
+  const NeighborOptions& options() const { return options_; }
   /// More particles and images than this in the range of one are not listed: nobody could hold such a list.
   static constexpr Index most_neighbors = 32768;
   /// A particle that has more, found by the last search, which has listed nobody then; -1: none.
@@ -91,6 +92,10 @@ class NeighborList {
   double whole_spacing() const;
 
   const NeighborStatistics& statistics() const { return statistics_; }
+  /// Counts as its own what a list of some of the particles has done. Pairs and the skin are those of searches of its
+  /// own, where it makes any.
+  /// @param part  these are of all particles
+  void count(const NeighborStatistics& before, const NeighborStatistics& now, double part);
 
   /// Compares the list with all pairs of particles and their images, whose distances are taken anew: those in range,
   /// and just after a search those up to the skin.
