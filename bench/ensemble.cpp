@@ -1,5 +1,6 @@
 /// Members of an ensemble, eight in the lanes of one run: nanoseconds per step and system, beside one system alone, and
-/// beside WHFast512 of `rebound` where Python has it and the processor has AVX-512.
+/// beside WHFast512 of `rebound` where Python has it and the processor has AVX-512; and the same in lanes with MEGNO, a
+/// small change that goes along and is measured at every step.
 ///
 /// Protocol: 9 rounds of every variant, its system alone and the peer in turn, each over 50 000 steps (with one system
 /// to a register 100 000), after one to warm up; medians of processor times. Planets: those of the Solar System, 5 days
@@ -15,6 +16,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/planet_systems.hpp"
 #include "integrators/wisdom_holman.hpp"
+#include "monitors/chaos.hpp"
 #include "scene/scene.hpp"
 
 #include <filesystem>
@@ -91,28 +93,68 @@ std::optional<double> peer_ns(bench::PeerProgram& peer, const Variant& one, std:
   return {};
 }
 
-void measure(const bench::Rows& rows, const Variant& one, bench::PeerProgram& peer) {
-  constexpr int rounds = 9;
-  constexpr std::int64_t steps = 50'000;
-  constexpr auto systems = static_cast<double>(SystemLanes::lanes);
+/// Eight systems that begin a little elsewhere.
+LaneRun run_of(const Variant& one) {
   LaneRun run(one.lanes(one.bodies), *one.scheme, one.options, Clock<double>::fixed(0, one.step));
   for (std::size_t lane = 0; lane < SystemLanes::lanes; ++lane) {
     ParticleSystem<double> s = one.bodies;
     s.positions().all() *= 1 + 1e-6 * static_cast<double>(lane);
     run.systems().put(lane, s);
   }
+  return run;
+}
+
+/// The same with a small change of each.
+class MegnoRun {
+ public:
+  explicit MegnoRun(const Variant& one) : run_(run_of(one)) {
+    run_.systems().carry(1);
+    const auto numbers = 6 * static_cast<std::size_t>(one.bodies.size());
+    for (std::size_t lane = 0; lane < SystemLanes::lanes; ++lane) {
+      changes_.push_back(std::make_shared<LaneChange>());
+      changes_.back()->begin(0, std::vector<double>(numbers, 1e-3));
+      run_.follow(lane, 0, changes_.back());
+    }
+  }
+  bool advance(std::int64_t steps) {
+    constexpr std::int64_t look = 1000;
+    for (std::int64_t made = 0; made < steps; made += look) {
+      if (!run_.advance(look)) return false;
+      for (std::size_t k = 0; k < changes_.size(); ++k)
+        changes_[k]->tell([&](std::int64_t, double growth) { sums_[k].add(growth); });
+    }
+    return true;
+  }
+
+ private:
+  LaneRun run_;
+  std::vector<std::shared_ptr<LaneChange>> changes_;
+  MegnoSums<double> sums_[SystemLanes::lanes];
+};
+
+void measure(const bench::Rows& rows, const Variant& one, bench::PeerProgram& peer) {
+  constexpr int rounds = 9;
+  constexpr std::int64_t steps = 50'000;
+  constexpr auto systems = static_cast<double>(SystemLanes::lanes);
+  LaneRun run = run_of(one);
+  MegnoRun megno(one);
   Simulation<double> alone(one.bodies, Composition<AnyHamiltonian<double>>(one.alone, *one.scheme, one.options),
                            one.step);
-  std::vector<double> in_lanes, by_itself, theirs;
+  std::vector<double> in_lanes, with_megno, times, by_itself, theirs;
   for (int round = 0; round <= rounds; ++round) {
     const double seconds = bench::processor_seconds_of([&] {
       if (!run.advance(steps)) throw Error("a run failed");
+    });
+    const double beside = bench::processor_seconds_of([&] {
+      if (!megno.advance(steps)) throw Error("a run failed");
     });
     const double single = bench::processor_seconds_of([&] {
       if (!alone.run(steps).ok()) throw Error("a run failed");
     });
     if (round == 0) continue;
     in_lanes.push_back(1e9 * seconds / (static_cast<double>(steps) * systems));
+    with_megno.push_back(1e9 * beside / (static_cast<double>(steps) * systems));
+    times.push_back(beside / seconds);
     by_itself.push_back(1e9 * single / static_cast<double>(steps));
     if (one.peer.empty() || !peer.version()) continue;
     if (const auto took = peer_ns(peer, one, 2 * steps)) theirs.push_back(*took);
@@ -120,6 +162,8 @@ void measure(const bench::Rows& rows, const Variant& one, bench::PeerProgram& pe
   std::optional<bench::Peer> beside;
   if (!theirs.empty()) beside = bench::Peer{"rebound " + one.peer, *peer.version(), bench::Measured(theirs).median};
   rows.add(one.name + "/lanes", "system_step_ns", bench::Measured(in_lanes), "ns", one.bodies.size(), beside);
+  rows.add(one.name + "/lanes, megno", "system_step_ns", bench::Measured(with_megno), "ns", one.bodies.size());
+  rows.add(one.name + "/lanes, megno over plain", "ratio", bench::Measured(times), "1", one.bodies.size());
   rows.add(one.name + "/alone", "system_step_ns", bench::Measured(by_itself), "ns", one.bodies.size(), beside);
 }
 

@@ -34,6 +34,16 @@ template <class Real> class TangentFlow {
   virtual std::optional<Failure> advance(std::int64_t steps) = 0;
   /// Where the steps have led.
   virtual void read(State& y, Changes& changes) = 0;
+
+  /// Told before `begin` to flows that go along with the run itself, and so measure the only change on its way: every
+  /// `stride` steps, by |c|^2 = |dx|^2 + scale^2 |dv|^2.
+  virtual void measure_along(std::int64_t /*stride*/, const Real& /*scale*/) {}
+  /// What such a flow has measured since `begin` or the last time, up to where the run is shown.
+  /// @param grown  takes steps, and by how much ln |c| grew in them, one stride after the other
+  /// @return whether it is one; else steps are to be made
+  virtual bool tell_growth(const std::function<void(std::int64_t steps, const Real& growth)>& /*grown*/) {
+    return false;
+  }
 };
 
 /// How a monitor gets the tangent flow of its run, for as many changes as it follows.

@@ -242,19 +242,32 @@ NOETHER_EIGHT_INLINE Eight set_distance(const Eights& x, ArcRow& row) {
   if (task.predict) store_eight(s, row.s);
 }
 
-/// Moves eight bodies along their arcs.
-template <bool compensated> NOETHER_EIGHT_INLINE void advance_arcs(const Arcs& arcs, ArcRow& row, ArcReport& report) {
-  const ArcTask& task = arcs.task;
-  const Eights x = load_eights(row.x), v = load_eights(row.v);
+/// Where the arcs of a row begin.
+NOETHER_EIGHT_INLINE EightOrbits orbits_of(const ArcRow& row, const Eights& x, const Eights& v, double h) {
   EightOrbits o;
-  o.r = load_eight(row.r), o.r_inverse = load_eight(row.r_inverse), o.mu = load_eight(row.mu), o.h = Eight(task.h);
+  o.r = load_eight(row.r), o.r_inverse = load_eight(row.r_inverse), o.mu = load_eight(row.mu), o.h = Eight(h);
   o.eta = dot(x, v);
   o.beta = (o.mu + o.mu) * o.r_inverse - dot(v, v);
   o.zeta = o.mu - o.beta * o.r;
-  const Eight s = task.predicted ? load_eight(row.s) : first_guess(o.h, o.r_inverse, o.eta, o.zeta, o.beta);
-  EightTrials t = functions_at(o, s);
+  return o;
+}
+
+/// The universal functions at the ends of arcs, and the last trial before.
+struct EightEnds {
+  EightTrials t;
+  Eight g1, g2, g3;
+
+  NOETHER_EIGHT_INLINE Eight s() const { return t.s + (t.step + t.more); }
+};
+
+/// @param s  where they are looked for
+/// @param exact  the lanes that were left to the solver for all cases
+NOETHER_EIGHT_INLINE EightEnds ends_of(const Arcs& arcs, const ArcRow& row, const EightOrbits& o, const Eight& s,
+                                       ExactArcs& exact, ArcReport& report) {
+  EightEnds e;
+  EightTrials& t = e.t;
+  t = functions_at(o, s);
   look_at(o, t);
-  ExactArcs exact;
   const unsigned bad = not_final(t) | exceeding(absolute(o.beta * (s * s)), Eight(widest_series));
   if (__builtin_expect(bad != 0, 0)) {
     ++report.second;
@@ -268,26 +281,44 @@ template <bool compensated> NOETHER_EIGHT_INLINE void advance_arcs(const Arcs& a
   // The last step is made in the functions. Its parts are summed before they meet G: one that is often less than half
   // a rounding of G would always be lost.
   const Eight d = t.step, half = Eight(0.5) * d, third = Eight(1.0 / 3) * d, bent = o.beta * t.g1;
-  const Eight g3 = t.g3 + (t.more * (d * t.g1 + t.g2) + d * (half * (third * t.g0 + t.g1) + t.g2));
-  const Eight g2 = t.g2 + (t.more * (d * t.g0 + t.g1) + d * (half * (t.g0 - third * bent) + t.g1));
-  const Eight g1 = t.g1 + (t.more * (t.g0 - d * bent) + d * (t.g0 - half * (third * (o.beta * t.g0) + bent)));
-  const Eight falling = Eight(0.0) - o.mu * g2;
-  const Eights dx = (falling * o.r_inverse) * x + (o.h - o.mu * g3) * v;
+  e.g3 = t.g3 + (t.more * (d * t.g1 + t.g2) + d * (half * (third * t.g0 + t.g1) + t.g2));
+  e.g2 = t.g2 + (t.more * (d * t.g0 + t.g1) + d * (half * (t.g0 - third * bent) + t.g1));
+  e.g1 = t.g1 + (t.more * (t.g0 - d * bent) + d * (t.g0 - half * (third * (o.beta * t.g0) + bent)));
+  return e;
+}
+
+/// Moves eight bodies along their arcs.
+/// @param beside  is called with where they began, x, v, and their ends, when the row holds where they have come to
+template <bool compensated, class Beside>
+NOETHER_EIGHT_INLINE void advance_arcs(const Arcs& arcs, ArcRow& row, ArcReport& report, const Beside& beside) {
+  const ArcTask& task = arcs.task;
+  const Eights x = load_eights(row.x), v = load_eights(row.v);
+  const EightOrbits o = orbits_of(row, x, v, task.h);
+  const Eight s = task.predicted ? load_eight(row.s) : first_guess(o.h, o.r_inverse, o.eta, o.zeta, o.beta);
+  ExactArcs exact;
+  const EightEnds e = ends_of(arcs, row, o, s, exact, report);
+  const EightTrials& t = e.t;
+  const Eight falling = Eight(0.0) - o.mu * e.g2;
+  const Eights dx = (falling * o.r_inverse) * x + (o.h - o.mu * e.g3) * v;
   const Eights new_x = add_change<compensated>(x, dx, row.x_low);
   store_eights(new_x, row.x);
   const Eight r_inverse = set_distance(new_x, row);
-  const Eight turning = (Eight(0.0) - o.mu * g1) * o.r_inverse;
+  const Eight turning = (Eight(0.0) - o.mu * e.g1) * o.r_inverse;
   const Eights dv = (turning * r_inverse) * x + (falling * r_inverse) * v;
   store_eights(add_change<compensated>(v, dv, row.v_low), row.v);
-  store_eight(t.s + (d + t.more), row.arc);
+  store_eight(e.s(), row.arc);
   if (task.predict) {
     // In an arc back over h at the mirrored point s would miss by -2 eta G2(s), if there were no kick.
-    const Eight last = t.eta + t.zeta * d, twice = last + last;
-    const Eight inverse = Eight(1.0) / (twice * g1 + o.r), back = (twice * inverse) * g2;
+    const Eight d = t.step, last = t.eta + t.zeta * d, twice = last + last;
+    const Eight inverse = Eight(1.0) / (twice * e.g1 + o.r), back = (twice * inverse) * e.g2;
     const Eight turn = (twice * t.g0 - o.eta) * (back * inverse);
     store_eight((t.s + d) - (back * (Eight(0.5) * turn * turn + Eight(0.5) * turn) + back), row.s);
   }
   if (__builtin_expect(exact.lanes != 0, 0)) place_exactly(exact, compensated, task, row);
+  beside(o, x, v, e, exact.lanes);
+}
+template <bool compensated> NOETHER_EIGHT_INLINE void advance_arcs(const Arcs& arcs, ArcRow& row, ArcReport& report) {
+  advance_arcs<compensated>(arcs, row, report, [](const auto&...) {});
 }
 
 }  // namespace

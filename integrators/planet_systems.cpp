@@ -1,5 +1,7 @@
 #include "integrators/planet_systems.hpp"
 
+#include "integrators/kepler_tangent.hpp"
+#include "integrators/kicked_changes.hpp"
 #include "integrators/planet_systems_simd.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "numbers/pack.hpp"
@@ -30,13 +32,23 @@ struct alignas(64) SystemCenters {
   double x[3][8], v[3][8], x_low[3][8], v_low[3][8];
 };
 
+void exact_turn(const double* start, double mu, double h, double s, double* change) {
+  const auto three = [](const double* of) { return Vec3<double>(of[0], of[1], of[2]); };
+  const KeplerTangent tangent(three(start), three(start + 3), mu, h, s);
+  const KeplerChange before{three(change), three(change + 3)};
+  const Vec3<double> x = tangent.position(before), v = tangent.velocity(before);
+  for (int c = 0; c < 3; ++c) change[c] = x[c], change[c + 3] = v[c];
+}
+
 class PlanetLanesOfSystems final : public SystemLanes {
  public:
   PlanetLanesOfSystems(PlanetSystemsOptions options, const ParticleSystem<double>& like)
       : options_(std::move(options)),
         kernels_(planet_system_kernels()),
         planets_(options_.order.size() - 1),
-        others_(!options_.others.terms().empty()) {
+        like_(like),
+        others_(!options_.others.terms().empty()),
+        time_dependent_(options_.others.claims().time_dependent) {
     for (State* state : {&run_, &shown_, &kept_}) {
       state->rows.assign(planets_, SystemRow{});
       state->masses.assign(others_ ? planets_ + 1 : 0, Pack(0));
@@ -92,6 +104,7 @@ class PlanetLanesOfSystems final : public SystemLanes {
     }
     run_.predicted_for = 0;
     prepared_ = false;
+    attracted_.reset();
   }
 
   void take(std::size_t lane, ParticleSystem<double>& s) const override {
@@ -111,24 +124,30 @@ class PlanetLanesOfSystems final : public SystemLanes {
   }
 
   void copy_lane(std::size_t from, std::size_t to) override {
+    attracted_.reset();
     for (SystemRow& row : run_.rows) copy_lane_of(row, from, to);
     copy_lane_of(run_.centers, from, to);
     copy_lane_of(run_.constants, from, to);
     for (Pack& m : run_.masses) m.lane[to] = m.lane[from];
+    for (ChangeRow& row : run_.changes) copy_lane_of(row, from, to);
+    for (ChangeCenter& center : run_.change_centers) copy_lane_of(center, from, to);
   }
 
   void show() override {
-    prepare();
-    shown_ = run_;
-    now_ = &shown_;
+    show_changes();
+    changes_go_along_ = false;
   }
-  void go_on() override { now_ = &run_; }
+  void go_on() override {
+    now_ = &run_;
+    changes_go_along_ = true;
+  }
   void keep() override {
     prepare();
     kept_ = run_;
   }
   void go_back() override {
     run_ = kept_;
+    attracted_.reset();
     failure_.reset();
   }
 
@@ -136,13 +155,65 @@ class PlanetLanesOfSystems final : public SystemLanes {
     prepare();
     if (letter == 'A') return drift(h);
     const SystemRows systems = rows();
-    kernels_.place(systems);
-    if (others_) add_others(time);
+    attract(systems, time);
     kernels_.kick(systems, h);
     if (!others_) return;  // inner forces leave the centres of mass alone
     for (int c = 0; c < 3; ++c) {
       for (std::size_t k = 0; k < lanes; ++k) add(now_->centers.v[c][k], now_->centers.v_low[c][k], center_[c][k]);
+      for (std::ptrdiff_t j = 0; j < systems.changes.count; ++j) {
+        ChangeCenter& center = systems.changes.center[j];
+        for (std::size_t k = 0; k < lanes; ++k) center.v[c][k] += center.kick[c][k];
+      }
     }
+  }
+
+  void carry(std::size_t changes) override {
+    run_.changes.assign(changes * planets_, ChangeRow{});
+    run_.change_centers.assign(changes, ChangeCenter{});
+    slopes_.emplace(options_.others, like_);
+    if (others_) u_ = VectorColumn<Pack>(like_.size());
+  }
+  void put_change(std::size_t lane, std::size_t change, const double* c) override {
+    attracted_.reset();
+    const auto n = static_cast<std::size_t>(like_.size());
+    for (const bool speed : {false, true}) {
+      const double* half = c + (speed ? 3 * n : 0);
+      for (std::size_t k = 0; k < 3; ++k) {
+        double whole = half[k * n];
+        for (std::size_t j = 0; j < planets_; ++j) {
+          ChangeRow& row = run_.changes[change * planets_ + j];
+          const double d = half[k * n + static_cast<std::size_t>(at(j))] - whole;
+          (speed ? row.v : row.x)[k][lane] = d;
+          whole += run_.rows[j].share[lane] * d;
+        }
+        ChangeCenter& center = run_.change_centers[change];
+        (speed ? center.v : center.x)[k][lane] = whole;
+      }
+    }
+  }
+  void scale_change(std::size_t lane, std::size_t change, double factor) override {
+    attracted_.reset();
+    const auto scale = [&](auto& of) {
+      for (int c = 0; c < 3; ++c) of.x[c][lane] *= factor, of.v[c][lane] *= factor;
+    };
+    for (std::size_t j = 0; j < planets_; ++j) scale(run_.changes[change * planets_ + j]);
+    scale(run_.change_centers[change]);
+  }
+  void measure(std::span<const LaneFlow> ahead, std::size_t change, double* squares) override {
+    double arcs = 0, kick = 0;
+    if (ahead.size() == 1) {
+      prepare();
+      (ahead[0].letter == 'A' ? arcs : kick) = ahead[0].h;
+      if (kick != 0) {
+        attract(rows(), ahead[0].time);
+        attracted_ = time_of(ahead[0].time);  // it is what the next kick of the run begins with
+      }
+    } else if (!ahead.empty()) {
+      show_changes();
+      for (const LaneFlow& one : ahead) flow(one.letter, one.h, one.time);
+    }
+    kernels_.measure(rows(), static_cast<std::ptrdiff_t>(change), arcs, kick, squares);
+    now_ = &run_;
   }
   void scale_velocities(double factor) override {
     const auto scale = [&](double(&lines)[3][8]) {
@@ -165,6 +236,8 @@ class PlanetLanesOfSystems final : public SystemLanes {
     SystemCenters centers = {};
     SystemConstants constants = {};
     std::vector<Pack> masses;  ///< for other forces, in the order of the rows, the star first
+    std::vector<ChangeRow> changes;
+    std::vector<ChangeCenter> change_centers;
     double predicted_for = 0;  ///< the length of the arcs that the rows hold predictions for; 0: none
   };
 
@@ -176,16 +249,33 @@ class PlanetLanesOfSystems final : public SystemLanes {
             .star = now_->constants.star,
             .relativity = options_.light ? now_->constants.relativity : nullptr,
             .beside = others_ ? star_[0] : nullptr,
+            .pull = pull_[0],
             .center = center_[0],
             .compensated = options_.compensated,
-            .exact = exact_arc};
+            .exact = exact_arc,
+            .changes = {now_->changes.data(), now_->change_centers.data(),
+                        changes_go_along_ ? std::ssize(now_->change_centers) : 0, exact_turn}};
+  }
+  void show_changes() {
+    prepare();
+    shown_ = run_;
+    now_ = &shown_;
   }
   void prepare() {
     if (std::exchange(prepared_, true)) return;
     kernels_.prepare(rows());
   }
 
+  double time_of(double time) const { return time_dependent_ ? time : 0; }
+  void attract(const SystemRows& systems, double time) {
+    if (now_ == &run_ && attracted_ && *attracted_ == time_of(time)) return;
+    attracted_.reset();
+    kernels_.place(systems);
+    if (others_) add_others(time);
+    kernels_.attract(systems);
+  }
   void drift(double h) {
+    if (now_ == &run_) attracted_.reset();
     const ArcReport report = kernels_.drift(rows(), {.h = h, .predicted = now_->predicted_for == h, .predict = true});
     now_->predicted_for = h;
     if (report.failed >= 0 && !failure_ && now_ == &run_) {
@@ -227,6 +317,23 @@ class PlanetLanesOfSystems final : public SystemLanes {
       a_.component(c)[0].store(star_[c]);
       for (std::size_t k = 0; k < planets_; ++k) a_.component(c)[at(k)].store(now_->rows[k].beside[c]);
     }
+    for (std::size_t j = 0; changes_go_along_ && j < now_->change_centers.size(); ++j) add_others(j);
+  }
+  /// How they change along a change.
+  void add_others(std::size_t change) {
+    ChangeRow* const moved = now_->changes.data() + change * planets_;
+    ChangeCenter& center = now_->change_centers[change];
+    for (int c = 0; c < 3; ++c) {
+      Pack star = Pack::load(center.x[c]);
+      for (std::size_t k = 0; k < planets_; ++k) star -= Pack::load(now_->rows[k].share) * Pack::load(moved[k].x[c]);
+      u_.component(c)[0] = star;
+      for (std::size_t k = 0; k < planets_; ++k) u_.component(c)[at(k)] = star + Pack::load(moved[k].y[c]);
+    }
+    const VectorColumn<Pack>& a = slopes_->sum(0, inertial_, u_);
+    for (int c = 0; c < 3; ++c) {
+      a.component(c)[0].store(center.star[c]);
+      for (std::size_t k = 0; k < planets_; ++k) a.component(c)[at(k)].store(moved[k].beside[c]);
+    }
   }
   /// In all lanes at once, or where branches differ in one after the other, that lane in all eight.
   void sum() {
@@ -259,14 +366,20 @@ class PlanetLanesOfSystems final : public SystemLanes {
   PlanetSystemsOptions options_;
   const PlanetSystemKernels& kernels_;
   std::size_t planets_;
+  ParticleSystem<double> like_;
   bool others_;
   State run_, shown_, kept_;
   State* now_ = &run_;
   bool prepared_ = false;
   alignas(64) double star_[3][8] = {};    ///< accelerations of the stars by other forces
+  alignas(64) double pull_[3][8] = {};    ///< accelerations of the stars
   alignas(64) double center_[3][8] = {};  ///< what the last kick gives to the centres of mass
   ParticleSystem<Pack> inertial_, one_;   ///< for other forces
-  VectorColumn<Pack> a_, one_a_;
+  VectorColumn<Pack> a_, one_a_, u_;
+  std::optional<detail::LaneSlopes> slopes_;
+  bool changes_go_along_ = true;
+  bool time_dependent_;
+  std::optional<double> attracted_;  ///< the time of which the accelerations of the run are known where it stands
   Workspace workspace_;
   std::optional<Failure> failure_;
 };

@@ -3,11 +3,14 @@
 #include "engine/lane_by_lane.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
+#include "integrators/kicked_changes.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "numbers/pack.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace noether {
 
@@ -18,7 +21,7 @@ namespace {
 class KickedLanes final : public SystemLanes {
  public:
   KickedLanes(ForceField<double> forces, const ParticleSystem<double>& like, bool compensated)
-      : forces_(std::move(forces)), claims_(KineticPotential<ForceField<double>>(forces_).claims()) {
+      : forces_(std::move(forces)), like_(like), claims_(KineticPotential<ForceField<double>>(forces_).claims()) {
     if (!forces_.has_lanes()) throw Error("a force is written for doubles only, so it has no lanes");
     bind_force(forces_, like);
     run_ = like.as<Pack>();
@@ -39,6 +42,7 @@ class KickedLanes final : public SystemLanes {
         run_.velocities().component(k)[i].lane[lane] = s.velocities().component(k)[i];
       }
     }
+    known_.reset();
     for (Index i = 0; i < s.size(); ++i) run_.masses()[i].lane[lane] = s.masses()[i];
   }
   void take(std::size_t lane, ParticleSystem<double>& s) const override {
@@ -60,6 +64,8 @@ class KickedLanes final : public SystemLanes {
     };
     copy(run_.positions());
     copy(run_.velocities());
+    for (Change& change : run_changes_) copy(change.x), copy(change.v);
+    known_.reset();
     for (Index i = 0; i < run_.size(); ++i) run_.masses()[i].lane[to] = run_.masses()[i].lane[from];
     if (auto* low = run_.low_words()) copy(low->x), copy(low->v);
   }
@@ -69,23 +75,118 @@ class KickedLanes final : public SystemLanes {
     showing_ = true;
   }
   void go_on() override { showing_ = false; }
-  void keep() override { kept_.assign_state(run_); }
+  void keep() override {
+    kept_.assign_state(run_);
+    kept_changes_ = run_changes_;
+  }
   void go_back() override {
     run_.assign_state(kept_);
+    run_changes_ = kept_changes_;
+    known_.reset();
     failure_.reset();
   }
 
   void flow(char letter, double h, double time) override {
-    ParticleSystem<Pack>& s = showing_ ? shown_ : run_;
-    if (letter == 'A') return s.advance_positions(Pack(h));
-    s.clock().set_stage_offset(Pack(time));
-    sum(letter, s);
-    s.advance_velocities(Pack(h), a_);
+    if (showing_) return flow(letter, h, time, shown_, shown_changes_);
+    flow(letter, h, time, run_, run_changes_);
+  }
+
+  void carry(std::size_t changes) override {
+    const Index n = run_.size();
+    run_changes_.assign(changes, {VectorColumn<Pack>(n), VectorColumn<Pack>(n), VectorColumn<Pack>(n)});
+    kept_changes_ = run_changes_;
+    by_forces_.emplace(forces_, like_);
+  }
+  void put_change(std::size_t lane, std::size_t change, const double* c) override {
+    Change& to = run_changes_[change];
+    const Index n = run_.size();
+    for (int k = 0; k < 3; ++k) {
+      for (Index i = 0; i < n; ++i) {
+        to.x.component(k)[i].lane[lane] = c[k * n + i];
+        to.v.component(k)[i].lane[lane] = c[(3 + k) * n + i];
+      }
+    }
+    known_.reset();
+  }
+  void scale_change(std::size_t lane, std::size_t change, double factor) override {
+    Change& of = run_changes_[change];
+    for (int k = 0; k < 3; ++k) {
+      for (Index i = 0; i < run_.size(); ++i) {
+        of.x.component(k)[i].lane[lane] *= factor;
+        of.v.component(k)[i].lane[lane] *= factor;
+      }
+    }
+    known_.reset();
+  }
+  void measure(std::span<const LaneFlow> ahead, std::size_t change, double* squares) override {
+    const LaneFlow none{'A', 0, 0};
+    if (ahead.size() < 2) return measure(ahead.empty() ? none : ahead[0], run_changes_[change], squares);
+    shown_.assign_state(run_);
+    shown_changes_ = run_changes_;
+    for (const LaneFlow& one : ahead) flow(one.letter, one.h, one.time, shown_, shown_changes_);
+    measure(none, shown_changes_[change], squares);
+    shown_changes_.clear();
   }
   void scale_velocities(double factor) override { (showing_ ? shown_ : run_).scale_velocities(Pack(factor)); }
   const std::optional<Failure>& failure() const override { return failure_; }
 
  private:
+  struct Change {
+    VectorColumn<Pack> x, v, a;  ///< `a` of the last kick
+  };
+  /// The kick whose accelerations of changes are known: positions have not moved since.
+  struct Known {
+    char letter;
+    double time;
+  };
+
+  void flow(char letter, double h, double time, ParticleSystem<Pack>& s, std::vector<Change>& changes) {
+    if (letter == 'A') {
+      for (Change& change : changes) add(Pack(h), change.v, change.x);
+      known_.reset();
+      return s.advance_positions(Pack(h));
+    }
+    s.clock().set_stage_offset(Pack(time));
+    sum(letter, s);
+    s.advance_velocities(Pack(h), a_);
+    if (changes.empty()) return;
+    sum_changes(letter, time, s, changes);
+    for (Change& change : changes) add(Pack(h), change.a, change.v);
+  }
+  void sum_changes(char letter, double time, const ParticleSystem<Pack>& s, std::vector<Change>& changes) {
+    const bool of_run = &changes == &run_changes_;
+    if (!claims_.time_dependent) time = 0;
+    if (of_run && known_ && known_->letter == letter && known_->time == time) return;
+    for (Change& change : changes) by_forces_->sum(claims_.kicks.size() > 1 ? letter : 0, s, change.x, change.a);
+    if (of_run) known_ = Known{letter, time};
+  }
+  static void add(const Pack& h, const VectorColumn<Pack>& rate, VectorColumn<Pack>& to) {
+    for (int k = 0; k < 3; ++k) {
+      const Pack* from = rate.component(k);
+      Pack* sum = to.component(k);
+      for (Index i = 0; i < to.size(); ++i) sum[i] += h * from[i];
+    }
+  }
+  void measure(const LaneFlow& ahead, Change& change, double* squares) {
+    const bool kick = ahead.letter != 'A';
+    if (kick) {
+      run_.clock().set_stage_offset(Pack(ahead.time));
+      sum_changes(ahead.letter, ahead.time, run_, run_changes_);
+    }
+    const Pack h(ahead.h);
+    Pack of_x(0), of_v(0);
+    for (int k = 0; k < 3; ++k) {
+      const Pack *x = std::as_const(change.x).component(k), *v = std::as_const(change.v).component(k),
+                 *a = std::as_const(change.a).component(k);
+      for (Index i = 0; i < run_.size(); ++i) {
+        const Pack at = kick ? x[i] : x[i] + h * v[i], speed = kick ? v[i] + h * a[i] : v[i];
+        of_x += at * at;
+        of_v += speed * speed;
+      }
+    }
+    of_x.store(squares);
+    of_v.store(squares + lanes);
+  }
   void sum(char letter, const ParticleSystem<Pack>& s) {
     if (careful_ == 0) {
       try {
@@ -119,9 +220,13 @@ class KickedLanes final : public SystemLanes {
   }
 
   ForceField<double> forces_;
+  ParticleSystem<double> like_;
   HamiltonianClaims claims_;
   ParticleSystem<Pack> run_, shown_, kept_, one_;
   VectorColumn<Pack> a_, one_a_;
+  std::vector<Change> run_changes_, kept_changes_, shown_changes_;
+  std::optional<detail::KickedChanges> by_forces_;
+  std::optional<Known> known_;
   Workspace workspace_;
   std::optional<Failure> failure_;
   bool showing_ = false;
@@ -134,12 +239,16 @@ class LaneLetters {
   using real = double;
 
   explicit LaneLetters(SystemLanes* systems) : systems_(systems) {}
+  /// While this is set flows of copies are not done, but written down there.
+  void write_to(std::vector<LaneFlow>* flows) { flows_ = flows; }
   std::string name() const { return systems_->name(); }
   HamiltonianClaims claims() const { return systems_->claims(); }
   void bind(ParticleSystem<double>& /*s*/) {}
   void open(ParticleSystem<double>& s) { s.phase().coordinates = claims().coordinates; }
   void close(ParticleSystem<double>& s) { s.phase().coordinates = 0; }
-  void flow(char letter, ParticleSystem<double>& s, double h) { systems_->flow(letter, h, s.time()); }
+  void flow(char letter, ParticleSystem<double>& s, double h) {
+    flows_ != nullptr ? flows_->push_back({letter, h, s.time()}) : systems_->flow(letter, h, s.time());
+  }
   double flow_with_action(char /*letter*/, ParticleSystem<double>& /*s*/, double /*h*/) {
     throw LogicError("the action was requested of systems in lanes, which do not sum it");
   }
@@ -149,12 +258,15 @@ class LaneLetters {
   void accelerations(const ParticleSystem<double>& /*s*/, VectorColumn<double>& /*a*/) {
     throw LogicError("accelerations were requested of systems in lanes");
   }
-  void observe(std::optional<Request> wanted) { wanted ? systems_->show() : systems_->go_on(); }
+  void observe(std::optional<Request> wanted) {
+    if (flows_ == nullptr) wanted ? systems_->show() : systems_->go_on();
+  }
   Evaluations evaluations() const { return {}; }
   const std::optional<Failure>& failure() const { return systems_->failure(); }
 
  private:
   SystemLanes* systems_;
+  std::vector<LaneFlow>* flows_ = nullptr;
 };
 
 /// Systems with one letter more.
@@ -178,6 +290,10 @@ class DampedLanes final : public SystemLanes {
     letter == 'D' ? scale_velocities(std::exp(-rate_ * h)) : systems_->flow(letter, h, time);
   }
   void scale_velocities(double factor) override { systems_->scale_velocities(factor); }
+  void carry(std::size_t /*changes*/) override { throw Error("changes of systems with drag have no lanes"); }
+  void put_change(std::size_t /*lane*/, std::size_t /*change*/, const double* /*c*/) override {}
+  void scale_change(std::size_t /*lane*/, std::size_t /*change*/, double /*factor*/) override {}
+  void measure(std::span<const LaneFlow> /*ahead*/, std::size_t /*change*/, double* /*squares*/) override {}
   const std::optional<Failure>& failure() const override { return systems_->failure(); }
 
  private:
@@ -199,14 +315,33 @@ std::unique_ptr<SystemLanes> systems_under_forces(const ForceField<double>& forc
 
 struct LaneRun::Walk {
   Walk(SystemLanes* systems, const Scheme& scheme, const CompositionOptions& options, const Clock<double>& clock)
-      : word(LaneLetters(systems), scheme, options) {
+      : word(LaneLetters(systems), scheme, options), timed(systems->claims().time_dependent) {
     at.add("", 1, Vec3<double>::Zero(), Vec3<double>::Zero());
     at.clock() = clock;
     word.bind(at);
     settled = kept = at;
   }
+  struct Followed {
+    std::size_t lane, change;
+    std::shared_ptr<LaneChange> by;
+  };
+  /// Works out what completes a copy: where time does not matter, the same after every step.
+  void look_ahead() {
+    LaneLetters& letters = word.hamiltonian();
+    const Phase phase = std::as_const(at).phase();
+    if (known && !timed && phase.opened && phase.pending) return;
+    ahead.clear();
+    letters.write_to(&ahead);
+    word.settle(at, settled, {}, {}, true);
+    letters.write_to(nullptr);
+    known = phase.opened && phase.pending;
+  }
+
   Composition<LaneLetters> word;
   ParticleSystem<double> at, settled, kept;  ///< of which only clock and phase mean anything
+  std::vector<Followed> followed;
+  std::vector<LaneFlow> ahead;  ///< what completes a copy
+  bool timed, known = false;    ///< whether flows depend on time; whether `ahead` is of a step that left one pending
 };
 
 LaneRun::LaneRun(std::unique_ptr<SystemLanes> systems, const Scheme& scheme, const CompositionOptions& options,
@@ -214,11 +349,51 @@ LaneRun::LaneRun(std::unique_ptr<SystemLanes> systems, const Scheme& scheme, con
     : systems_(std::move(systems)), walk_(std::make_unique<Walk>(systems_.get(), scheme, options, clock)) {}
 
 LaneRun::~LaneRun() = default;
+LaneRun::LaneRun(LaneRun&&) noexcept = default;
 
 std::int64_t LaneRun::step() const { return walk_->at.clock().step(); }
 
+void LaneRun::follow(std::size_t lane, std::size_t change, std::shared_ptr<LaneChange> by) {
+  systems_->put_change(lane, change, by->start().data());
+  walk_->followed.push_back({lane, change, std::move(by)});
+}
+
+void LaneRun::forget(std::size_t lane) {
+  std::erase_if(walk_->followed, [&](const Walk::Followed& one) { return one.lane == lane; });
+}
+
 bool LaneRun::advance(std::int64_t steps) {
-  return walk_->word.advance(walk_->at, {.steps = steps}).failure == nullptr;
+  const std::int64_t until = step() + steps;
+  while (step() < until) {
+    std::int64_t stride = until - step();
+    for (const Walk::Followed& one : walk_->followed) stride = std::min(stride, one.by->next(step()));
+    if (walk_->word.advance(walk_->at, {.steps = stride}).failure != nullptr) return false;
+    measure(true);
+  }
+  return true;
+}
+
+/// @param due  only changes that are to be measured at this step; else those that may be looked at
+void LaneRun::measure(bool due) {
+  constexpr std::size_t none = static_cast<std::size_t>(-1);
+  alignas(64) double squares[2 * SystemLanes::lanes];
+  std::size_t measured = none;
+  for (const Walk::Followed& one : walk_->followed) {
+    if (due && one.by->next(step()) > 0) continue;
+    if (measured == none) walk_->look_ahead();
+    if (one.change != measured) systems_->measure(walk_->ahead, one.change, squares);
+    measured = one.change;
+    const double x2 = squares[one.lane], v2 = squares[one.lane + SystemLanes::lanes];
+    if (!due) {
+      one.by->seen(step(), x2, v2);
+      continue;
+    }
+    one.by->measured(step(), x2, v2);
+    const double factor = one.by->factor();
+    if (factor == 1) continue;
+    systems_->scale_change(one.lane, one.change, factor);
+    one.by->scaled(factor);
+  }
 }
 
 void LaneRun::settle() {
@@ -227,6 +402,7 @@ void LaneRun::settle() {
     systems_->go_on();
   }
   walk_->word.settle(walk_->at, walk_->settled, {}, {}, true);
+  measure(false);
 }
 
 void LaneRun::take(std::size_t lane, ParticleSystem<double>& s) const {
@@ -239,11 +415,13 @@ void LaneRun::take(std::size_t lane, ParticleSystem<double>& s) const {
 void LaneRun::keep() {
   systems_->keep();
   walk_->kept.assign_state(walk_->at);
+  for (const Walk::Followed& one : walk_->followed) one.by->keep();
 }
 
 void LaneRun::go_back() {
   systems_->go_back();
   walk_->at.assign_state(walk_->kept);
+  for (const Walk::Followed& one : walk_->followed) one.by->go_back();
 }
 
 }  // namespace noether

@@ -6,15 +6,23 @@
 #include "engine/particle_system.hpp"
 #include "forces/sum.hpp"
 #include "integrators/composition_options.hpp"
+#include "integrators/lane_change.hpp"
 #include "integrators/scheme.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace noether {
+
+/// A flow that is to be, as `SystemLanes::flow` has it.
+struct LaneFlow {
+  char letter;
+  double h, time;
+};
 
 /// The states of eight systems, and the flows of the Hamiltonian that they have in common but for masses.
 ///
@@ -44,6 +52,17 @@ class SystemLanes {
   virtual void flow(char letter, double h, double time) = 0;
   /// v *= factor for every particle, as drag does.
   virtual void scale_velocities(double factor) = 0;
+
+  /// From now on small changes of each system go along with the flows of the run, by their derivatives; of length 0
+  /// until they are put.
+  /// @throws Error  naming a force that has no derivative
+  virtual void carry(std::size_t changes) = 0;
+  /// @param c  of inertial positions and velocities, laid out as a state of `TangentFlow`; before the run has begun
+  virtual void put_change(std::size_t lane, std::size_t change, const double* c) = 0;
+  virtual void scale_change(std::size_t lane, std::size_t change, double factor) = 0;
+  /// |dx|^2 and |dv|^2 of a change where some flows would lead it from here, in inertial coordinates; shape (2, 8).
+  virtual void measure(std::span<const LaneFlow> ahead, std::size_t change, double* squares) = 0;
+
   /// Why a flow of the run could not be done since `go_back()`, in one lane at least; the first time tells.
   virtual const std::optional<Failure>& failure() const = 0;
 };
@@ -59,7 +78,7 @@ std::unique_ptr<SystemLanes> systems_under_forces(const ForceField<double>& forc
 /// @param rate  v' = - rate v [1/time]
 std::unique_ptr<SystemLanes> with_drag(std::unique_ptr<SystemLanes> systems, double rate);
 
-/// Eight runs at once, step by step: a splitting method over systems in lanes.
+/// Eight runs at once, step by step: a splitting method over systems in lanes, and changes that go along.
 class LaneRun {
  public:
   /// @throws SchemeMismatch
@@ -68,9 +87,15 @@ class LaneRun {
   ~LaneRun();
   LaneRun(const LaneRun&) = delete;
   LaneRun& operator=(const LaneRun&) = delete;
+  LaneRun(LaneRun&&) noexcept;
 
   std::int64_t step() const;
   SystemLanes& systems() { return *systems_; }
+
+  /// From here a change goes along with the system of a lane; `systems()` carry as many as there are of a lane.
+  void follow(std::size_t lane, std::size_t change, std::shared_ptr<LaneChange> by);
+  /// Nobody looks at the changes of a lane any more.
+  void forget(std::size_t lane);
 
   /// Makes steps, up to one that fails in a lane. @return whether none has failed
   bool advance(std::int64_t steps);
@@ -83,6 +108,7 @@ class LaneRun {
 
  private:
   struct Walk;
+  void measure(bool due);
   std::unique_ptr<SystemLanes> systems_;
   std::unique_ptr<Walk> walk_;
 };

@@ -29,6 +29,10 @@ template <class Real> class ForceSlopes {
   /// Sums the forces of the kick `letter`, 0 for all, at positions x + epsilon u.
   /// @return shape (n): in the values accelerations at x, in the slopes their change along u
   const VectorColumn<D>& sum(char letter, const Real& time, const VectorColumn<Real>& x, const VectorColumn<Real>& u);
+  /// Of the particles, where they are not those that this was made for. @param mass  of particle i
+  template <class Mass> void set_masses(const Mass& mass) {
+    for (Index i = 0; i < moving_.size(); ++i) moving_.masses()[i] = D(mass(i));
+  }
   const std::optional<Failure>& failure() const { return failure_; }
 
  private:

@@ -20,6 +20,8 @@ constexpr double too_long = 1e100, too_short = 1e-100;
 /// Steps between two times that several changes are made orthogonal, or that a single one is looked at.
 constexpr std::int64_t stride_of_many = 8, stride_of_one = 64;
 
+constexpr const char* not_finite_any_more = "changes of the state are not finite any more";
+
 /// Rms distance from the mean over rms speed about the mean, of one particle over its own speed; 1 where one is 0.
 template <class Real> double natural_time(const ParticleSystem<Real>& s) {
   const auto n = static_cast<double>(s.size());
@@ -61,7 +63,8 @@ std::string cost_of(Index coordinates, Index changes) {
 }  // namespace
 
 template <class Real>
-void NearbyOrbits<Real>::begin(const Snapshot<Real>& now, std::int64_t seed, const std::optional<double>& time_scale) {
+void NearbyOrbits<Real>::begin(const Snapshot<Real>& now, std::int64_t seed, const std::optional<double>& time_scale,
+                               std::int64_t stride) {
   const ParticleSystem<Real>& s = now.state();
   flow_->gather(s, y_);
   scale_ = time_scale ? *time_scale : s.variables().empty() ? natural_time(s) : 1;
@@ -77,6 +80,9 @@ void NearbyOrbits<Real>::begin(const Snapshot<Real>& now, std::int64_t seed, con
     }
   }
   orthonormalize();
+  flow_->measure_along(stride, Real(scale_));
+  const Clock<Real>& clock = s.clock();
+  flow_->begin(Clock<Real>::fixed(clock.start(), clock.dt(), step_), y_, changes_);
   begun_ = true;
 }
 
@@ -104,11 +110,26 @@ template <class Real> std::vector<Real> NearbyOrbits<Real>::orthonormalize() {
   return left;
 }
 
+template <class Real> template <class Grown> bool NearbyOrbits<Real>::was_told(const Grown& grown) {
+  using std::isfinite;
+  bool finite = true;
+  const bool told = flow_->tell_growth([&](std::int64_t steps, const Real& growth) {
+    finite = finite && isfinite(growth);
+    if (finite) grown(steps, std::vector<Real>{growth});
+  });
+  if (!finite) end(not_finite_any_more);
+  return told;
+}
+
 template <class Real>
 template <class Grown>
 void NearbyOrbits<Real>::follow(const Snapshot<Real>& now, std::int64_t stride, const Grown& grown) {
   using std::isfinite, std::log;
   if (!ended_.empty() || now.step() == step_) return;
+  if (was_told(grown)) {
+    step_ = now.step();
+    return;
+  }
   const Clock<Real>& clock = now.state().clock();
   const auto go_on = [&] { flow_->begin(Clock<Real>::fixed(clock.start(), clock.dt(), step_), y_, changes_); };
   go_on();
@@ -125,7 +146,7 @@ void NearbyOrbits<Real>::follow(const Snapshot<Real>& now, std::int64_t stride, 
     for (std::size_t k = 0; k < before.size(); ++k) growth.push_back(log(lengths[k] / before[k]));
     if (!again) lengths_ = lengths;
     for (const Real& g : growth) {
-      if (!isfinite(g)) return end("changes of the state are not finite any more");
+      if (!isfinite(g)) return end(not_finite_any_more);
     }
     grown(steps, growth);
     if (again && !last) go_on();
@@ -171,7 +192,7 @@ template <class Real> void Megno<Real>::check_run() const {
 }
 
 template <class Real> void Megno<Real>::at_start(const Snapshot<Real>& start) {
-  if (!this->begun()) this->begin(start, seed, time_scale);
+  if (!this->begun()) this->begin(start, seed, time_scale, 1);
 }
 
 template <class Real> void Megno<Real>::observe(const Snapshot<Real>& now) {
@@ -245,20 +266,23 @@ template <class Real> void Lyapunov<Real>::check_run(std::int64_t numbers) const
   if (this->missing()) refuse_without_flow("lyapunov");
 }
 
+template <class Real> std::int64_t Lyapunov<Real>::stride() const {
+  return vectors > 1 ? stride_of_many : stride_of_one;
+}
+
 template <class Real> void Lyapunov<Real>::at_start(const Snapshot<Real>& start) {
   if (this->begun()) return;
-  this->begin(start, seed, time_scale);
+  this->begin(start, seed, time_scale, stride());
   grown_.assign(static_cast<std::size_t>(vectors), Real(0));
 }
 
 template <class Real> void Lyapunov<Real>::observe(const Snapshot<Real>& now) {
   at_start(now);
   double steps_made = 0;
-  this->follow(now, vectors > 1 ? stride_of_many : stride_of_one,
-               [&](std::int64_t steps, const std::vector<Real>& growth) {
-                 for (std::size_t k = 0; k < growth.size(); ++k) grown_[k] += growth[k];
-                 steps_made += static_cast<double>(steps);
-               });
+  this->follow(now, stride(), [&](std::int64_t steps, const std::vector<Real>& growth) {
+    for (std::size_t k = 0; k < growth.size(); ++k) grown_[k] += growth[k];
+    steps_made += static_cast<double>(steps);
+  });
   time_ += steps_made * std::abs(now.state().clock().dt());
   ++samples_;
 }

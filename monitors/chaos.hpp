@@ -59,14 +59,16 @@ template <class Real> class NearbyOrbits {
   using Changes = typename TangentFlow<Real>::Changes;
 
   /// Takes normal deviates for `count` changes, of length 1 and at right angles to each other.
-  void begin(const Snapshot<Real>& now, std::int64_t seed, const std::optional<double>& time_scale);
+  /// @param stride  steps at once
+  void begin(const Snapshot<Real>& now, std::int64_t seed, const std::optional<double>& time_scale,
+             std::int64_t stride);
   bool begun() const { return begun_; }
   /// Why changes are not followed any further; empty while they are.
   const std::string& ended() const { return ended_; }
   void end(const std::string& reason) {
     if (begun_ && ended_.empty()) ended_ = reason;
   }
-  /// Goes on to this moment, `stride` steps at once. @param grown  takes the steps, and by how much the logarithm of
+  /// Goes on to this moment, a stride at once. @param grown  takes the steps, and by how much the logarithm of
   /// each length grew in them
   template <class Grown> void follow(const Snapshot<Real>& now, std::int64_t stride, const Grown& grown);
   void set_count(Index count) { count_ = count; }
@@ -81,6 +83,8 @@ template <class Real> class NearbyOrbits {
   void load_changes(const SavedState& saved, const std::string& prefix);
 
  private:
+  /// Whether the flow goes along with the run itself, and has told what became of the change.
+  template <class Grown> bool was_told(const Grown& grown);
   Real length(Index k) const;
   Real product(Index j, Index k) const;
   std::vector<Real> orthonormalize();
@@ -195,6 +199,7 @@ template <class Real = double> class Lyapunov : public NearbyOrbits<Real> {
 
  private:
   void check_run(std::int64_t numbers) const;
+  std::int64_t stride() const;
 
   std::vector<Real> grown_;  ///< ln of the growth of each
   std::int64_t samples_ = 0;

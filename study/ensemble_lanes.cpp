@@ -71,13 +71,28 @@ std::string why_alone_by_hamiltonian(const Scene& scene) {
   return "";
 }
 
+/// Monitors of chaos may look more often than they are asked to: what they have to be told until then stays short.
+constexpr std::int64_t longest_without_telling = 65536;
+
 std::string why_alone_by_monitors(const Scene& scene) {
-  const Watched watched = detail::watched_of(scene);
+  Watched watched = detail::watched_of(scene);
+  Index changes = 0;
+  watched.tangents.make = [&](Index wanted) {
+    changes = wanted;
+    return std::unique_ptr<TangentFlow<double>>();
+  };
   for (const SceneWatch& watch : scene.watches) {
     if (watch.kind != SceneWatch::Kind::monitor) continue;
     if (watch.cadence.steps == 0) return fmt::format("monitor '{}' looks by time, not by steps", watch.monitor.name);
+    changes = 0;
     if (watch.monitor.make(watched).wanted().action) {
       return fmt::format("monitor '{}' asks for the action of the flows", watch.monitor.name);
+    }
+    if (changes > 1) {
+      return fmt::format("monitor '{}' follows {} vectors, of which one goes in lanes", watch.monitor.name, changes);
+    }
+    if (changes == 1 && watch.cadence.after) {
+      return fmt::format("monitor '{}' does not begin with the run", watch.monitor.name);
     }
   }
   return "";
@@ -147,7 +162,11 @@ class LaneMember {
     now_.clock() = clock_of(scene_.integrator);
     integrator_.bind(now_);
     now_.keep_low_words(false);
-    const Watched watched = detail::watched_of(scene_);
+    Watched watched = detail::watched_of(scene_);
+    watched.tangents.make = [this](Index /*one*/) {
+      changes_.push_back(std::make_shared<LaneChange>());
+      return tangent_flow_in_lanes(changes_.back(), 6 * now_.size());
+    };
     for (const SceneWatch& watch : scene_.watches) {
       if (watch.kind == SceneWatch::Kind::monitor) add(watch, watched);
     }
@@ -157,6 +176,8 @@ class LaneMember {
   std::int64_t member() const { return member_; }
   const Scene& scene() const { return scene_; }
   ParticleSystem<double>& now() { return now_; }
+  /// What monitors of chaos follow.
+  const std::vector<std::shared_ptr<LaneChange>>& changes() const { return changes_; }
   const std::optional<Outcome>& ended() const { return ended_; }
   void end(Outcome outcome) { ended_ = std::move(outcome); }
 
@@ -164,6 +185,7 @@ class LaneMember {
   std::int64_t next(std::int64_t step) const {
     std::int64_t next = std::numeric_limits<std::int64_t>::max();
     for (const Watcher& one : watchers_) next = std::min(next, one.looks.next(step));
+    if (!changes_.empty()) next = std::min(next, detail::next_multiple(step, longest_without_telling));
     for (const Stop& one : stops_) next = std::min(next, detail::next_multiple(step, one.steps));
     return next;
   }
@@ -184,7 +206,8 @@ class LaneMember {
       if (found && !reason) reason = found;
     }
     for (Watcher& one : watchers_) {
-      if (one.looks.due(step)) one.monitor.observe(moment);
+      const bool told = one.follows && detail::is_multiple(step, longest_without_telling);
+      if (told || one.looks.due(step)) one.monitor.observe(moment);
     }
     if (reason) stop(*reason);
   }
@@ -225,6 +248,7 @@ class LaneMember {
     detail::Looks looks;
     AnyMonitor<double> monitor;
     Request wanted = {};
+    bool follows = false;  ///< a small change
   };
   struct Stop {
     std::int64_t steps;
@@ -232,6 +256,7 @@ class LaneMember {
   };
 
   void add(const SceneWatch& watch, const Watched& watched) {
+    const std::size_t changes = changes_.size();
     AnyMonitor<double> monitor = watch.monitor.make(watched);
     detail::Looks looks;
     looks.steps = watch.cadence.steps;
@@ -246,7 +271,7 @@ class LaneMember {
     };
     for (int k = 2; taken(); ++k) name = fmt::format("{}_{}", base, k);
     const Request wanted = monitor.wanted();
-    watchers_.push_back({std::move(name), std::move(looks), std::move(monitor), wanted});
+    watchers_.push_back({std::move(name), std::move(looks), std::move(monitor), wanted, changes_.size() > changes});
   }
 
   Snapshot<double> snapshot(Request wanted) {
@@ -275,6 +300,7 @@ class LaneMember {
   AnyIntegrator<double> integrator_;
   std::list<Watcher> watchers_;
   std::vector<Stop> stops_;
+  std::vector<std::shared_ptr<LaneChange>> changes_;
   std::optional<Outcome> ended_;
 };
 
@@ -290,6 +316,9 @@ class Batch {
     for (std::size_t k = 0; k < member_lanes; ++k) {
       run_.systems().put(k, members_[std::min(k, members_.size() - 1)]->scene().particles);
     }
+    std::size_t changes = 0;
+    for (const auto& one : members_) changes = std::max(changes, one->changes().size());
+    if (changes > 0) run_.systems().carry(changes);
   }
 
   /// @return whether it was not interrupted
@@ -300,6 +329,7 @@ class Batch {
         members_[k]->fail(*bad);
       } else {
         members_[k]->look();
+        follow(k);
       }
     }
     run_.keep();
@@ -321,6 +351,12 @@ class Batch {
   const std::vector<std::unique_ptr<LaneMember>>& members() const { return members_; }
 
  private:
+  void follow(std::size_t member) {
+    const auto& changes = members_[member]->changes();
+    for (std::size_t j = 0; j < changes.size(); ++j) {
+      if (changes[j]->begun()) run_.follow(member, j, changes[j]);
+    }
+  }
   bool going() const {
     return std::any_of(members_.begin(), members_.end(), [](const auto& one) { return !one->ended(); });
   }
@@ -387,6 +423,9 @@ class Batch {
   }
   /// The lanes of members who have ended go with those of others: nothing in them may fail any more.
   void replace_ended() {
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      if (members_[k]->ended()) run_.forget(k);
+    }
     std::size_t from = 0;
     while (from < members_.size() && members_[from]->ended()) ++from;
     if (from == members_.size()) return;

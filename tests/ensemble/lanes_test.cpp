@@ -35,8 +35,23 @@ void check_company(const EnsembleScene& scene, std::int64_t members) {
   }
 }
 
-/// The largest difference of positions at the end between members in lanes and one by one, and that all end alike.
-double difference(const EnsembleScene& scene, const std::vector<std::int64_t>& members) {
+/// The columns of a row whose names begin so.
+std::vector<double> values_of(const EnsembleScene& scene, const io::EnsembleRow& row, const std::string& begin) {
+  std::vector<double> values;
+  std::size_t at = scene.definition().keys.size();
+  for (const io::EnsembleColumn& column : scene.definition().columns) {
+    const auto end = at + static_cast<std::size_t>(column.width());
+    for (; at < end; ++at) {
+      if (column.name.starts_with(begin)) values.push_back(row.values[at]);
+    }
+  }
+  return values;
+}
+
+/// The largest difference at the end between members in lanes and one by one, of positions or of other columns, and
+/// that all end alike.
+double difference(const EnsembleScene& scene, const std::vector<std::int64_t>& members,
+                  const std::string& columns = "position") {
   const std::vector<io::EnsembleRow> rows = rows_together(scene, members);
   double most = 0;
   for (std::size_t k = 0; k < members.size(); ++k) {
@@ -45,13 +60,10 @@ double difference(const EnsembleScene& scene, const std::vector<std::int64_t>& m
     CHECK(rows[k].outcome == one.outcome);
     CHECK(rows[k].step == one.step);
     CHECK(rows[k].particle == one.particle);
-    std::size_t at = scene.definition().keys.size();
-    for (const io::EnsembleColumn& column : scene.definition().columns) {
-      const auto end = at + static_cast<std::size_t>(column.width());
-      for (std::size_t i = at; column.name == "position" && i < end; ++i) {
-        most = std::max(most, std::abs(rows[k].values[i] - one.values[i]));
-      }
-      at = end;
+    const std::vector<double> here = values_of(scene, rows[k], columns), there = values_of(scene, one, columns);
+    REQUIRE_FALSE(here.empty());
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      if (!std::isnan(there[i])) most = std::max(most, std::abs(here[i] - there[i]));
     }
   }
   return most;
@@ -207,6 +219,82 @@ steps = 100
   CHECK(difference(scene, {0, 3, 6, 9, 12, 15}) <= 1e-13);
 }
 
+/// Planets that are watched by monitors of chaos, at steps that are and are not multiples of each other.
+std::string watched(const std::string& hamiltonian, const std::string& method, int steps = 200) {
+  return planets(hamiltonian, method, steps) +
+         "[[every]]\ntype = \"megno\"\nsteps = 30\n[[every]]\ntype = \"lyapunov\"\nsteps = 50\nseed = 2\n";
+}
+
+TEST_CASE("changes of members in lanes have the same bits alone and in any company", "[ensemble][lanes][chaos]") {
+  const ScratchFolder folder;
+  const auto check = [&](const std::string& hamiltonian, const std::string& method) {
+    INFO(hamiltonian << " " << method);
+    write_text(folder / "scene.toml", watched(hamiltonian, method, 120));
+    REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
+    // Near-parabolic arcs, close encounters, and bodies that escape, so that lanes are given to others.
+    check_company(EnsembleScene(folder / "scene.toml", plan_of(near), {}, true, standard_parts()), 16);
+  };
+  check("type = \"wisdom_holman\"", "verlet_aba");
+  check("type = \"wisdom_holman\"\n[[hamiltonian.force]]\ntype = \"gr_potential\"\nc = 100", "verlet");
+  check("type = \"kinetic_potential\"\n[[hamiltonian.force]]\ntype = \"gravity\"", "verlet");
+}
+
+TEST_CASE("MEGNO and exponents in lanes are those of the runs of their scenes to rounding",
+          "[ensemble][lanes][chaos]") {
+  const ScratchFolder folder;
+  const auto check = [&](const std::string& hamiltonian, const std::string& method,
+                         const std::string& integrator = "") {
+    INFO(hamiltonian << " " << method << " " << integrator);
+    write_text(folder / "scene.toml",
+               replaced(watched(hamiltonian, method), "step = 0.1\n", "step = 0.1\n" + integrator + "\n"));
+    const EnsembleScene scene(folder / "scene.toml", plan_of(calm), {}, true, standard_parts());
+    REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
+    const std::vector<std::int64_t> members = {0, 1, 2, 3, 4, 5, 6, 7};
+    // Positions differ by 2e-13 at most, and Y is of the size of 2.
+    const double megno = difference(scene, members, "megno"), exponent = difference(scene, members, "lyapunov");
+    CHECK(megno > 0);  // else lanes were not used
+    CHECK(megno <= 2e-11);
+    CHECK(exponent <= 2e-12);
+  };
+  const std::string wisdom_holman = "type = \"wisdom_holman\"";
+  const std::string relativity = wisdom_holman + "\n[[hamiltonian.force]]\ntype = \"gr_potential\"\nc = 100\n";
+  const std::string oblate = "[[hamiltonian.force]]\ntype = \"oblateness\"\nJ2 = 1e-3\nradius = 0.01\n";
+  const std::string gravity = "type = \"kinetic_potential\"\n[[hamiltonian.force]]\ntype = \"gravity\"";
+  check(wisdom_holman, "verlet_aba");
+  check(wisdom_holman, "verlet");
+  check(wisdom_holman, "verlet_aba", "corrector = 17");
+  check(wisdom_holman, "aba_10_6_4", "compensated = true");
+  check(relativity, "verlet_aba");
+  check(relativity + oblate, "verlet_aba");
+  check(gravity, "verlet");
+  check(gravity, "verlet_aba");
+  check(gravity + "\nsoftening = 0.01\n" + oblate, "yoshida_4");
+}
+
+TEST_CASE("in lanes MEGNO of regular planets tends to 2, and of chaotic ones grows by their exponent",
+          "[ensemble][lanes][chaos]") {
+  const ScratchFolder folder;
+  std::string text = watched("type = \"wisdom_holman\"", "verlet_aba", 40000);
+  text = text.substr(0, text.find("[[stop]]")) + text.substr(text.find("[[every]]\ntype = \"megno\""));
+  write_text(folder / "scene.toml", text);
+  // One by one, without lanes, these have <Y> = 2.001 and 112, and exponents times time of 9 and 221.
+  const EnsembleScene scene(folder / "scene.toml", plan_of({"particles.body.c.a=1.5:1.2913:2"}), {}, true,
+                            standard_parts());
+  const std::vector<io::EnsembleRow> rows = rows_together(scene, {0, 1});
+  const auto figure = [&](std::size_t row, const std::string& column) {
+    return values_of(scene, rows[row], column).front();
+  };
+  CHECK(std::abs(figure(0, "megno_mean") - 2) < 0.05);
+  CHECK(std::abs(figure(0, "megno_value") - 2) < 0.5);
+  const double time = 0.1 * 40000;
+  const double exponent = figure(1, "lyapunov_exponent");
+  CHECK(figure(1, "megno_mean") > 20);
+  CHECK(exponent * time > 40);
+  // <Y> = lambda t/2 where growth is even in time.
+  CHECK(std::abs(2 * figure(1, "megno_mean") / (exponent * time) - 1) < 0.3);
+  CHECK(figure(0, "lyapunov_exponent") * time < 12);  // ln of some 4000 / (2 pi) revolutions
+}
+
 TEST_CASE("what goes one by one says why", "[ensemble][lanes]") {
   const ScratchFolder folder;
   const auto why = [&](const std::string& what, const std::string& by) {
@@ -222,6 +310,11 @@ TEST_CASE("what goes one by one says why", "[ensemble][lanes]") {
         "tracers of wisdom_holman go in lanes by themselves");
   CHECK(why("[[stop]]", "[[every]]\ntype = \"shadow_hamiltonian\"\nsteps = 10\n[[stop]]") ==
         "monitor 'shadow_hamiltonian' asks for the action of the flows");
+  CHECK(why("[[stop]]", "[[every]]\ntype = \"megno\"\nsteps = 10\n[[stop]]").empty());
+  CHECK(why("[[stop]]", "[[every]]\ntype = \"lyapunov\"\nvectors = 6\nsteps = 10\n[[stop]]") ==
+        "monitor 'lyapunov' follows 6 vectors, of which one goes in lanes");
+  CHECK(why("[[stop]]", "[[every]]\ntype = \"megno\"\nsteps = 10\nafter = 5\n[[stop]]") ==
+        "monitor 'megno' does not begin with the run");
 }
 
 }  // namespace
