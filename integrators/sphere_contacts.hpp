@@ -60,11 +60,11 @@ class SphereContacts {
   /// A sphere at its last contact, or at the start of the window.
   struct Sphere {
     double time = 0;
-    Vec3<double> x, v;
-    Vec3<std::int32_t> image;
+    Vec3<double> x = Vec3<double>::Zero(), v = Vec3<double>::Zero();
+    Vec3<std::int32_t> image = Vec3<std::int32_t>::Zero();
     double reach = 0;  ///< half the edge of a cube about `centre` that it does not leave
     double path = 0;   ///< how far it may still go in that cube
-    Vec3<double> centre;
+    Vec3<double> centre = Vec3<double>::Zero();
     std::uint32_t contacts = 0;
     bool touched = false;
   };

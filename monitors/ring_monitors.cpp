@@ -235,13 +235,13 @@ struct Wave {
 
 /// One of each pair k and - k.
 std::vector<Wave> waves_of(const Vec3<double>& edges, double slide, double shortest) {
-  const double turn = 2 * std::numbers::pi, most = turn / shortest;
+  const double circle = 2 * std::numbers::pi, most = circle / shortest;
   std::vector<Wave> waves;
-  for (double q = 0; turn * q / edges[1] <= most; ++q) {
-    const double ky = turn * q / edges[1], shift = ky * slide / turn, half = edges[0] / shortest;
+  for (double q = 0; circle * q / edges[1] <= most; ++q) {
+    const double ky = circle * q / edges[1], shift = ky * slide / circle, half = edges[0] / shortest;
     for (double p = std::ceil(-half - shift); p <= half - shift; ++p) {
       if (q == 0 && p <= 0) continue;
-      const double kx = (turn * p + ky * slide) / edges[0];
+      const double kx = (circle * p + ky * slide) / edges[0];
       if (kx * kx + ky * ky <= most * most) waves.push_back({kx, ky});
     }
   }
