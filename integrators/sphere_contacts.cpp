@@ -85,7 +85,7 @@ double SphereContacts::window(double h) const {
   const bool boxed = box_.is_periodic();
   const double shortest = boxed ? box_.edges().minCoeff() : std::numeric_limits<double>::infinity();
   const double area = boxed ? box_.edges()[0] * box_.edges()[1] : (high[0] - low[0]) * (high[1] - low[1]);
-  const double far = 4 * radii / n + std::sqrt(area / n);
+  const double far = 4 * radii / n + std::max(std::sqrt(area / n), (high - low).maxCoeff() / n);
   const auto too_long = [&](double w) {
     const double widening = 1 + shear_ * w;
     return shear_ * w > 0.25 || 2 * (largest_ + 1.5 * w * fastest) * widening > share_of_edge * shortest ||
@@ -105,7 +105,10 @@ std::size_t SphereContacts::slot(std::int64_t across, std::int64_t along) const 
 /// of the image, which has slid along y.
 template <class Act> void SphereContacts::for_cells(const Sphere& sphere, const Act& act) const {
   const double y_here = sphere.centre[1] - slope_ * sphere.centre[0];
-  const auto cell = [](double x, double edge) { return static_cast<std::int64_t>(std::floor(x / edge)); };
+  const auto cell = [](double x, double edge) {
+    constexpr double most = 1e15;  // whole numbers there, in cells far out in open space
+    return static_cast<std::int64_t>(std::clamp(std::floor(x / edge), -most, most));
+  };
   const auto first = cell(sphere.centre[0] - sphere.reach, cell_x_),
              last = cell(sphere.centre[0] + sphere.reach, cell_x_);
   for (std::int64_t a = first; a <= last; ++a) {
