@@ -15,13 +15,28 @@ struct ChargedPairField {
   double force_unit, energy_unit;  ///< what the sums count, powers of two
 };
 
+/// The same of molecules of three charged sites each, between which no pair is left out. Groups, rows and records are
+/// those of molecules.
+struct ChargedMoleculeField {
+  const double* records;  ///< shape (records, 3, 4): x, y, z of the sites, and a number that nobody reads
+  double products[3][3];  ///< of the charges of two sites [energy length]
+  const ChargeSeries* series;
+  double close2;                   ///< see ChargedPairField
+  double force_unit, energy_unit;  ///<
+};
+
 using SumChargedPairs = void (*)(const ChargedPairField& field, const PairGroup& group, PairSums& sums);
+
+/// @param sums  of the three sites; the first tells whether any of them is close
+using SumChargedMolecules = void (*)(const ChargedMoleculeField& field, const PairGroup& group, PairSums* sums);
 
 /// Kernels by what the series is (of r^2 itself two terms of the energy and one of the force, the same with a switch,
 /// any without one) and what is summed (forces, all).
 struct ChargedPairKernels {
   SumChargedPairs quick[3][2];
   SumChargedPairs careful[3][2];
+  SumChargedMolecules quick_molecules[3][2];
+  SumChargedMolecules careful_molecules[3][2];
 };
 
 NOETHER_KERNELS(ChargedPairKernels, charged_pair_kernels)

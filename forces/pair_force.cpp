@@ -1,5 +1,6 @@
 #include "forces/pair_force.hpp"
 
+#include "forces/charged_molecules.hpp"
 #include "forces/charged_pairs_mixed_simd.hpp"
 #include "forces/charged_pairs_simd.hpp"
 #include "forces/pair_chunk_simd.hpp"
@@ -192,21 +193,35 @@ void add_charges_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& 
                           const ChargeSeries& series, PairPrecision precision) {
   const double* const charges = s.column<Charge>().data();
   if (std::all_of(charges, charges + s.size(), [](double q) { return q == 0; })) return;
-  std::optional<NeighborList> own;
-  NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(plan.cutoff);
   const bool mixed = precision == PairPrecision::mixed, sums = out.wants_energy() || out.wants_virial();
-  if (mixed) list.update(s, NeighborList::Numbers::whole);
-  if (!mixed || sums) list.update(s);
   const PairLimits limits = limits_of(plan);
   const double strongest = strongest_product(s), force_unit = limits.strongest / strongest_pair;
   const double energy_unit = force_unit * std::ldexp(1.0, std::ilogb(plan.cutoff) + 1);
+  const double close2 = strongest / (0x1.8p50 * force_unit);
   const std::size_t all = sums ? 1 : 0;
   const std::size_t kind = !is_of_r2(series) ? 2 : series.switch_inverse != 0 ? 1 : 0;
-  const NeighborSelection* const selection = selection_of(out, s, list, plan.types);
   const ChargedPairKernels& kernels = charged_pair_kernels();
+  if (auto& molecules = out.workspace().get<ChargedMolecules>();
+      !mixed && plan.types[0] < 0 && molecules.update(s, plan.cutoff, out.neighbors())) {
+    const auto quick = kernels.quick_molecules[kind][all], careful = kernels.careful_molecules[kind][all];
+    ChargedMoleculeField field{molecules.records(), {}, &series, close2, force_unit, energy_unit};
+    const double by = std::sqrt(s.units().coulomb_constant);
+    for (std::size_t i = 0; i < ChargedMolecules::sites; ++i) {
+      for (std::size_t j = 0; j < ChargedMolecules::sites; ++j)
+        field.products[i][j] = (by * molecules.charge(i)) * (by * molecules.charge(j));
+    }
+    return add_pair_groups(
+        out, s, molecules.pairs(), {force_unit, energy_unit}, limits,
+        [&](const PairGroup& group, PairSums& found, bool care) { (care ? careful : quick)(field, group, &found); });
+  }
+  std::optional<NeighborList> own;
+  NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(plan.cutoff);
+  if (mixed) list.update(s, NeighborList::Numbers::whole);
+  if (!mixed || sums) list.update(s);
+  const NeighborSelection* const selection = selection_of(out, s, list, plan.types);
   const auto quick = kernels.quick[kind][all], careful = kernels.careful[kind][all];
-  const ChargedPairField field{!mixed || sums ? records_with_charges(s, list) : nullptr, &series,
-                               strongest / (0x1.8p50 * force_unit), force_unit, energy_unit};
+  const ChargedPairField field{!mixed || sums ? records_with_charges(s, list) : nullptr, &series, close2, force_unit,
+                               energy_unit};
   const auto sum_doubles = [&](const PairGroup& group, PairSums& found, bool care) {
     (care ? careful : quick)(field, group, found);
   };

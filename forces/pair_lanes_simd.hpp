@@ -34,8 +34,8 @@ struct Records {
 
 /// Records are loaded whole, 32 bytes each, or in halves, which four lanes need fewer shuffles for, and turned: gathers
 /// of single numbers take longer. What nobody asks for is not made.
-HWY_INLINE Records load_records(const double* records, const std::int32_t* offsets) {
-  const auto record = [&](int k) { return records + static_cast<std::ptrdiff_t>(offsets[k]); };
+/// @param record  of a lane
+template <class Record> HWY_INLINE Records load_records(const Record& record) {
   const Lanes d;
 #if HWY_TARGET == HWY_SCALAR
   const double* one = record(0);
@@ -66,6 +66,10 @@ HWY_INLINE Records load_records(const double* records, const std::int32_t* offse
   return {{hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, c, e)},
           hn::InterleaveUpper(d, c, e)};
 #endif
+}
+
+HWY_INLINE Records load_records(const double* records, const std::int32_t* offsets) {
+  return load_records([&](int k) HWY_ATTR { return records + static_cast<std::ptrdiff_t>(offsets[k]); });
 }
 
 HWY_INLINE Points load_points(const double* records, const std::int32_t* offsets) {
