@@ -50,7 +50,7 @@ struct Orbit {
 };
 
 // An independent integration of the equations to 4.8e-35 and 7.1e-30, printed with 20 digits.
-const std::array<Orbit, 2> orbits = {
+const std::array<Orbit, 2> seen_orbits = {
     {{{.Omega = 1},
       {1, 2, 0.5, 0.3, -1.2, 0.1},
       100,
@@ -72,7 +72,7 @@ template <class Real> ParticleSystem<Real> after(const Orbit& orbit, int steps) 
 }  // namespace
 
 TEST_CASE("epicycles are exact at any step, in doubles and in 113 bits", "[integrators][shearing_sheet]") {
-  for (const Orbit& orbit : orbits) {
+  for (const Orbit& orbit : seen_orbits) {
     // Steps of many turns, of about half a turn, and short ones. Starts are rounded to doubles: 0.3 and the like.
     for (const int steps : {1, 3, 16, 31, 32, 33, 100, 1000, 20'000}) {
       INFO(steps << " steps");
@@ -228,7 +228,7 @@ TEST_CASE("the shadow Hamiltonian of a sheet is flatter than its energy", "[inte
 }
 
 TEST_CASE("a sheet with compensated sums, in lanes and over dual numbers", "[integrators][shearing_sheet]") {
-  const Orbit& orbit = orbits[0];
+  const Orbit& orbit = seen_orbits[0];
   Simulation<double> plain(one(orbit.start), compose(test::sheet<double>(orbit.options), schemes::verlet_aba), 0.01);
   Simulation<double> compensated(
       one(orbit.start), compose(test::sheet<double>(orbit.options), schemes::verlet_aba, {.compensated = true}), 0.01);
