@@ -5,7 +5,7 @@
 PROGRAM is noether, OUT a folder in which the runs stay. 512 SPC/E waters at 0.997 g/cm^3 that noether has placed are equilibrated by
 gmx_d (20 ps at 300 K, v-rescale); from there both run without a bath: velocity Verlet with rigid molecules (md-vv), 2 fs, smooth PME
 with a cutoff of 0.9 nm, Lennard-Jones cut there. The energy is then the same, so T is predicted, not set. Printed are means with errors
-from blocks of ten, and the difference in units of its error. GROMACS stands in double precision; without gmx_d the script says so and ends."""
+from blocks of ten, and the difference in units of its error. GROMACS runs in double precision; without gmx_d the script says so and ends."""
 
 import argparse
 import math
@@ -158,7 +158,7 @@ class Runs:
                   "-c", f"{name}.g96")
 
     def last(self, name):
-        """Places and velocities at the end, nine digits behind the point."""
+        """Places and velocities at the end, to nine decimals."""
         text = (self.folder / f"{name}.g96").read_text()
 
         def table(word):
