@@ -23,7 +23,7 @@ template <class Real> struct ShearedCell {
 ///
 /// Nothing but differences of places enters, brought to their nearest image exactly: it does not matter where the cell
 /// is cut. A particle feels nothing of its own images, whose pull cancels.
-/// @cost 9 n m square roots with m massive particles, in lanes of rows
+/// @cost 9 n m square roots with m massive particles, of doubles in lanes of rows
 template <class Real> class ShearedGravity {
  public:
   Real G = Real(1), softening = Real(0);
@@ -34,7 +34,9 @@ template <class Real> class ShearedGravity {
            VectorColumn<Real>& a, bool energy);
 
  private:
-  std::vector<Index> massive_;
+  void gather(const VectorColumn<Real>& places, const ScalarColumn<Real>& masses);
+
+  std::vector<Real> x_, y_, z_, m_, row_;  ///< of the massive ones
 };
 
 extern template class ShearedGravity<double>;
