@@ -10,10 +10,10 @@ namespace noether {
 
 namespace {
 
-constexpr std::size_t reach = 6;  // places along an axis that a value between two of them takes
+constexpr std::size_t taken_places = 6;  // places along an axis that a value between two of them takes
 
 /// Weights of six places for a value and its slope, at the part u in [0, 1] of the way from the third to the fourth.
-template <class Number> struct Weights { std::array<Number, reach> value{}, slope{}; };
+template <class Number> struct Weights { std::array<Number, taken_places> value{}, slope{}; };
 
 template <class Number> Weights<Number> weights_at(const Number& u) {
   // Hermite's cubic of two values and two slopes, and these as differences of fourth order.
@@ -57,11 +57,11 @@ Sloped<Number> between(const FieldGrid& grid, const std::vector<double>& values,
              k0 = static_cast<std::size_t>(cell.first[2]);
   const auto& [wx, wy, wz] = cell.weights;
   Sloped<Number> all;
-  for (std::size_t i = 0; i < reach; ++i) {
+  for (std::size_t i = 0; i < taken_places; ++i) {
     Number plane(0), by_y(0), by_z(0);
-    for (std::size_t j = 0; j < reach; ++j) {
+    for (std::size_t j = 0; j < taken_places; ++j) {
       Number row(0), along(0);
-      for (std::size_t k = 0; k < reach; ++k) {
+      for (std::size_t k = 0; k < taken_places; ++k) {
         const Number here(values[(((i0 + i) * ny + j0 + j) * nz + k0 + k) * width + c]);
         row += wz.value[k] * here;
         along += wz.slope[k] * here;
