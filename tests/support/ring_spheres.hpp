@@ -37,18 +37,22 @@ inline ParticleSystem<double> patch(const Patch& wanted) {
   auto& radii = s.add_column<BodyRadius>();
   Philox random(wanted.seed, 1);
   const auto grid = [](double x) { return std::nearbyint(x * 4096) / 4096; };
+  const auto three = [&] {  // drawn in this order by every compiler
+    const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+    return Vec3<double>(x, y, z);
+  };
   std::vector<Vec3<double>> places;
   while (s.size() < wanted.count) {
     const double r = grid(wanted.smallest + (wanted.largest - wanted.smallest) * random.uniform());
-    const Vec3<double> x(grid(wanted.edges[0] * random.uniform()), grid(wanted.edges[1] * random.uniform()),
-                         grid(wanted.thickness * (random.uniform() - 0.5)));
+    const Vec3<double> at_random = three();
+    const Vec3<double> x(grid(wanted.edges[0] * at_random[0]), grid(wanted.edges[1] * at_random[1]),
+                         grid(wanted.thickness * (at_random[2] - 0.5)));
     bool free = x[0] < wanted.edges[0] && x[1] < wanted.edges[1];
     for (std::size_t k = 0; k < places.size() && free; ++k) {
       const double touch = r + std::as_const(radii)[static_cast<Index>(k)];
       free = s.box().minimum_image(Vec3<double>(x - places[k])).norm() > touch;
     }
-    const Vec3<double> c(grid(wanted.speed * (random.uniform() - 0.5)), grid(wanted.speed * (random.uniform() - 0.5)),
-                         grid(wanted.speed * (random.uniform() - 0.5)));
+    const Vec3<double> c = (wanted.speed * (three() - Vec3<double>::Constant(0.5))).unaryExpr(grid);
     if (!free) continue;
     places.push_back(x);
     Vec3<double> at = x;
