@@ -102,7 +102,7 @@ double ChargedMolecules::measure(const ParticleSystem<double>& s) {
           offsets_[site - 1][static_cast<std::size_t>(k)][at(m)] = nearest;
           square += nearest * nearest;
         }
-        if (!(square <= block)) block = square;  // what is no number stays
+        if (square > block || std::isnan(square)) block = square;  // what is no number stays
       }
     }
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(block) & ~(std::uint64_t{1} << 63U);

@@ -102,9 +102,8 @@ bool sum_group(const Kernel& kernel, const PairGroup& group, PairSums& found, st
 }
 
 /// Adds what the neighbors of each particle do to it.
-/// @param kernel  (group, sums, careful): fills PairSums of a group, one for each site, the first of which tells
-/// whether
-///   a pair is `close`
+/// @param kernel  (group, sums, careful): fills PairSums of a group, one for each site; the first tells whether a pair
+///   is `close`
 /// @param limits  those that `kernel` knows, and what messages call the force
 template <class Kernel>
 void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, const ListedPairs& pairs,

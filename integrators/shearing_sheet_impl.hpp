@@ -105,21 +105,26 @@ template <class F, class Real>
 void ShearingSheet<F, Real>::move_spheres(ParticleSystem<Real>& s, const Real& h, const Real& end) {
   if constexpr (std::is_same_v<Real, double>) {
     spheres_->begin(s);
-    for (double left = h; left > 0;) {
+    double left = h;
+    const char* broken = nullptr;
+    for (int windows = 0; left > 0 && broken == nullptr; ++windows) {
       const double window = spheres_->find(s, left, boxed_ ? 1.5 * rates_.Omega * (end - left) : 0.0);
       const double after = window == left ? 0.0 : left - window;
       move_to(s, window == h ? epicycle(h) : Epicycle<double>::plain(rates_, window), end - after);
       spheres_->put(s);
       left = after;
-      if (!spheres_->piles_up()) continue;
-      if (!observing_) {
-        failure_ = Failure{Outcome::Kind::solver_failure, -1, "velocity",
-                           "spheres pile up: they touch more than 1000 times each in one flow; give a larger "
-                           "minimum_rebound or a smaller step"};
+      if (spheres_->piles_up()) {
+        broken =
+            "spheres pile up: they touch more than 1000 times each in one flow; give a larger minimum_rebound or a "
+            "smaller step";
+      } else if (windows == SphereContacts::most_windows) {
+        broken =
+            "spheres are so fast that contacts are looked for more than 10000 times in one flow; give a smaller step";
       }
-      if (left > 0) move_to(s, Epicycle<double>::plain(rates_, left), end);
-      return;
     }
+    if (broken == nullptr) return;
+    if (!observing_) failure_ = Failure{Outcome::Kind::solver_failure, -1, "velocity", broken};
+    if (left > 0) move_to(s, Epicycle<double>::plain(rates_, left), end);
   }
 }
 

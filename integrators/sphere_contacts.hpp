@@ -26,6 +26,9 @@ namespace noether {
 /// @source Donev2005
 class SphereContacts {
  public:
+  /// In one flow. Where more are needed spheres fly past thousands of others in a step.
+  static constexpr int most_windows = 10'000;
+
   explicit SphereContacts(HardSpheres law) : law_(law) { law_.check(); }
 
   const HardSpheres& law() const { return law_; }

@@ -93,8 +93,8 @@ class Gromacs:
                       f"{name}.tpr", "-po", f"{name}.out.mdp")
         self.run(0)
 
-    def call(self, *command):
-        done = subprocess.run((self.program, *command), cwd=self.folder, capture_output=True, text=True, check=False,
+    def call(self, *command, answers=None):
+        done = subprocess.run((self.program, *command), cwd=self.folder, input=answers, capture_output=True, text=True, check=False,
                               env={key: value for key, value in os.environ.items() if key != "OMP_NUM_THREADS"})
         if done.returncode != 0:
             sys.exit(done.stderr[-2000:])

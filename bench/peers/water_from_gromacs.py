@@ -9,11 +9,9 @@ from blocks of ten, and the difference in units of its error. GROMACS runs in do
 
 import argparse
 import math
-import os
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 
 import h5py
@@ -142,11 +140,8 @@ class Runs:
     def __init__(self, folder):
         self.folder = folder
 
-    def call(self, *command, stdin=None):
-        done = subprocess.run(("gmx_d", *command), cwd=self.folder, input=stdin, capture_output=True, text=True, check=False,
-                              env={key: value for key, value in os.environ.items() if key != "OMP_NUM_THREADS"})
-        if done.returncode != 0:
-            sys.exit(done.stderr[-2000:])
+    program = "gmx_d"
+    call = gromacs_water.Gromacs.call
 
     def run(self, name, start, steps, bath=""):
         """Runs from a start, and leaves NAME.edr, NAME.xtc and NAME.g96."""
@@ -169,7 +164,7 @@ class Runs:
 
     def series(self, name, *terms):
         """{term: [...]} of the energy file."""
-        self.call("energy", "-f", f"{name}.edr", "-o", f"{name}.xvg", "-dp", stdin="\n".join(terms) + "\n\n")
+        self.call("energy", "-f", f"{name}.edr", "-o", f"{name}.xvg", "-dp", answers="\n".join(terms) + "\n\n")
         lines = (self.folder / f"{name}.xvg").read_text().splitlines()
         names = [re.search('"(.*)"', line).group(1) for line in lines if re.match(r"@ s\d+ legend", line)]
         columns = list(zip(*(map(float, line.split()) for line in lines if line[0] not in "@#")))[1:]

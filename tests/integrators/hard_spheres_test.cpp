@@ -336,7 +336,8 @@ TEST_CASE("spheres have the same bits where a box is cut elsewhere, over threads
   set_thread_count(before);
 }
 
-TEST_CASE("spheres pressed together come to rest, or say that they pile up", "[integrators][hard_spheres]") {
+TEST_CASE("spheres pressed together come to rest, or say that they pile up; so do those that are too fast",
+          "[integrators][hard_spheres]") {
   // Seven that attract each other and lose all of their speed of approach: a heap.
   ParticleSystem<double> s(unit_system("reduced"));
   s.add_column<BodyRadius>();
@@ -372,6 +373,19 @@ TEST_CASE("spheres pressed together come to rest, or say that they pile up", "[i
   const Outcome outcome = endless.run(10);
   CHECK_FALSE(outcome.ok());
   CHECK(outcome.message.find("spheres pile up") != std::string::npos);
+
+  // So fast that they would be looked for without end, in open space and in a box.
+  for (const auto& [boxed, speed] : {std::pair(false, 1e300), {true, 1e6}}) {
+    CAPTURE(boxed, speed);
+    ParticleSystem<double> fast(unit_system("reduced"));
+    if (boxed) fast.set_box(Box::periodic({10, 10, 10}));
+    fast.add("one", 1, {1, 1, 0}, {0, -1.5, 0});
+    fast.add("other", 1, {1, 4, 0}, {speed, -1.5, 0});
+    fast.add_column<BodyRadius>().all().setConstant(1);
+    Simulation<double> sim(fast, compose(sheet_of_spheres({}, {.restitution = 0.5}), schemes::verlet), 0.1);
+    const Outcome seen = sim.run(10);
+    CHECK(seen.message.find("so fast that contacts are looked for") != std::string::npos);
+  }
 }
 
 TEST_CASE("spheres that are none are refused, and others cost nothing", "[integrators][hard_spheres]") {
