@@ -245,7 +245,8 @@ def test_scripts_of_examples_print_what_their_pages_say_and_draw(example, matplo
 def matplotlib():
     plotting = pytest.importorskip("matplotlib")
     plotting.use("agg")
-    yield plotting
+    with plotting.rc_context():  # scripts set a style for all that they draw
+        yield plotting
     plotting.pyplot.close("all")
 
 
