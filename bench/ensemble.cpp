@@ -94,12 +94,12 @@ std::optional<double> peer_ns(bench::PeerProgram& peer, const Variant& one, std:
 }
 
 /// Eight systems that begin a little elsewhere.
-LaneRun run_of(const Variant& one) {
-  LaneRun run(one.lanes(one.bodies), *one.scheme, one.options, Clock<double>::fixed(0, one.step));
+SplittingLanes run_of(const Variant& one) {
+  SplittingLanes run(one.lanes(one.bodies), *one.scheme, one.options, Clock<double>::fixed(0, one.step));
   for (std::size_t lane = 0; lane < SystemLanes::lanes; ++lane) {
     ParticleSystem<double> s = one.bodies;
     s.positions().all() *= 1 + 1e-6 * static_cast<double>(lane);
-    run.systems().put(lane, s);
+    run.put(lane, s);
   }
   return run;
 }
@@ -108,7 +108,7 @@ LaneRun run_of(const Variant& one) {
 class MegnoRun {
  public:
   explicit MegnoRun(const Variant& one) : run_(run_of(one)) {
-    run_.systems().carry(1);
+    run_.carry(1);
     const auto numbers = 6 * static_cast<std::size_t>(one.bodies.size());
     for (std::size_t lane = 0; lane < SystemLanes::lanes; ++lane) {
       changes_.push_back(std::make_shared<LaneChange>());
@@ -127,7 +127,7 @@ class MegnoRun {
   }
 
  private:
-  LaneRun run_;
+  SplittingLanes run_;
   std::vector<std::shared_ptr<LaneChange>> changes_;
   MegnoSums<double> sums_[SystemLanes::lanes];
 };
@@ -136,7 +136,7 @@ void measure(const bench::Rows& rows, const Variant& one, bench::PeerProgram& pe
   constexpr int rounds = 9;
   constexpr std::int64_t steps = 50'000;
   constexpr auto systems = static_cast<double>(SystemLanes::lanes);
-  LaneRun run = run_of(one);
+  SplittingLanes run = run_of(one);
   MegnoRun megno(one);
   Simulation<double> alone(one.bodies, Composition<AnyHamiltonian<double>>(one.alone, *one.scheme, one.options),
                            one.step);

@@ -1,8 +1,8 @@
 #include "integrators/system_lanes.hpp"
 
-#include "engine/lane_by_lane.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
+#include "integrators/force_lanes.hpp"
 #include "integrators/kicked_changes.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "numbers/pack.hpp"
@@ -16,20 +16,16 @@ namespace noether {
 
 namespace {
 
-/// Systems under forces. A force is evaluated in all lanes at once; where its branches differ, in one lane after the
-/// other, each time with that lane in all eight: the same code has the same bits.
+/// Systems under forces.
 class KickedLanes final : public SystemLanes {
  public:
-  KickedLanes(ForceField<double> forces, const ParticleSystem<double>& like, bool compensated)
-      : forces_(std::move(forces)), like_(like), claims_(KineticPotential<ForceField<double>>(forces_).claims()) {
-    if (!forces_.has_lanes()) throw Error("a force is written for doubles only, so it has no lanes");
-    bind_force(forces_, like);
+  KickedLanes(const ForceField<double>& forces, const ParticleSystem<double>& like, bool compensated)
+      : forces_(forces, like), like_(like), claims_(KineticPotential<ForceField<double>>(forces).claims()) {
     run_ = like.as<Pack>();
     run_.clock() = Clock<Pack>::free(0);
     run_.keep_low_words(compensated);
-    shown_ = kept_ = one_ = run_;
-    one_.keep_low_words(false);
-    a_ = one_a_ = VectorColumn<Pack>(like.size());
+    shown_ = kept_ = run_;
+    a_ = VectorColumn<Pack>(like.size());
   }
 
   std::string name() const override { return "kinetic_potential"; }
@@ -95,7 +91,7 @@ class KickedLanes final : public SystemLanes {
     const Index n = run_.size();
     run_changes_.assign(changes, {VectorColumn<Pack>(n), VectorColumn<Pack>(n), VectorColumn<Pack>(n)});
     kept_changes_ = run_changes_;
-    by_forces_.emplace(forces_, like_);
+    by_forces_.emplace(forces_.forces(), like_);
   }
   void put_change(std::size_t lane, std::size_t change, const double* c) override {
     Change& to = run_changes_[change];
@@ -147,7 +143,8 @@ class KickedLanes final : public SystemLanes {
       return s.advance_positions(Pack(h));
     }
     s.clock().set_stage_offset(Pack(time));
-    sum(letter, s);
+    const std::optional<Failure> failure = forces_.sum(claims_.kicks.size() > 1 ? letter : 0, s, a_);
+    if (failure && !failure_ && !showing_) failure_ = failure;
     s.advance_velocities(Pack(h), a_);
     if (changes.empty()) return;
     sum_changes(letter, time, s, changes);
@@ -187,50 +184,17 @@ class KickedLanes final : public SystemLanes {
     of_x.store(squares);
     of_v.store(squares + lanes);
   }
-  void sum(char letter, const ParticleSystem<Pack>& s) {
-    if (careful_ == 0) {
-      try {
-        return evaluate(letter, s, a_);
-      } catch (const LanesDiffer&) {
-        careful_ = 100;  // giving up costs more than a few evaluations
-      }
-    }
-    --careful_;
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      spread(lane, s.positions(), one_.positions());
-      spread(lane, s.velocities(), one_.velocities());
-      for (Index i = 0; i < s.size(); ++i) one_.masses()[i] = Pack(s.masses()[i].lane[lane]);
-      one_.clock() = s.clock();
-      evaluate(letter, one_, one_a_);
-      for (int k = 0; k < 3; ++k) {
-        for (Index i = 0; i < s.size(); ++i) a_.component(k)[i].lane[lane] = one_a_.component(k)[i].lane[0];
-      }
-    }
-  }
-  void evaluate(char letter, const ParticleSystem<Pack>& s, VectorColumn<Pack>& a) {
-    ForceSink<Pack> sink(a, s, {}, &workspace_);
-    if (claims_.kicks.size() > 1) sink.set_kick_letter(letter);
-    forces_.add_to(sink, s);
-    if (sink.failure() && !failure_ && !showing_) failure_ = sink.failure();
-  }
-  static void spread(std::size_t lane, const VectorColumn<Pack>& from, VectorColumn<Pack>& to) {
-    for (int k = 0; k < 3; ++k) {
-      for (Index i = 0; i < from.size(); ++i) to.component(k)[i] = Pack(from.component(k)[i].lane[lane]);
-    }
-  }
 
-  ForceField<double> forces_;
+  detail::ForceLanes forces_;
   ParticleSystem<double> like_;
   HamiltonianClaims claims_;
-  ParticleSystem<Pack> run_, shown_, kept_, one_;
-  VectorColumn<Pack> a_, one_a_;
+  ParticleSystem<Pack> run_, shown_, kept_;
+  VectorColumn<Pack> a_;
   std::vector<Change> run_changes_, kept_changes_, shown_changes_;
   std::optional<detail::KickedChanges> by_forces_;
   std::optional<Known> known_;
-  Workspace workspace_;
   std::optional<Failure> failure_;
   bool showing_ = false;
-  int careful_ = 0;  ///< evaluations to come that go lane by lane
 };
 
 /// Systems in lanes as a Hamiltonian: the particles that it is given are a clock and a phase.
@@ -313,7 +277,7 @@ std::unique_ptr<SystemLanes> systems_under_forces(const ForceField<double>& forc
   return std::make_unique<KickedLanes>(forces, like, compensated);
 }
 
-struct LaneRun::Walk {
+struct SplittingLanes::Walk {
   Walk(SystemLanes* systems, const Scheme& scheme, const CompositionOptions& options, const Clock<double>& clock)
       : word(LaneLetters(systems), scheme, options), timed(systems->claims().time_dependent) {
     at.add("", 1, Vec3<double>::Zero(), Vec3<double>::Zero());
@@ -344,25 +308,25 @@ struct LaneRun::Walk {
   bool timed, known = false;    ///< whether flows depend on time; whether `ahead` is of a step that left one pending
 };
 
-LaneRun::LaneRun(std::unique_ptr<SystemLanes> systems, const Scheme& scheme, const CompositionOptions& options,
-                 const Clock<double>& clock)
+SplittingLanes::SplittingLanes(std::unique_ptr<SystemLanes> systems, const Scheme& scheme,
+                               const CompositionOptions& options, const Clock<double>& clock)
     : systems_(std::move(systems)), walk_(std::make_unique<Walk>(systems_.get(), scheme, options, clock)) {}
 
-LaneRun::~LaneRun() = default;
-LaneRun::LaneRun(LaneRun&&) noexcept = default;
+SplittingLanes::~SplittingLanes() = default;
+SplittingLanes::SplittingLanes(SplittingLanes&&) noexcept = default;
 
-std::int64_t LaneRun::step() const { return walk_->at.clock().step(); }
+std::int64_t SplittingLanes::step() const { return walk_->at.clock().step(); }
 
-void LaneRun::follow(std::size_t lane, std::size_t change, std::shared_ptr<LaneChange> by) {
+void SplittingLanes::follow(std::size_t lane, std::size_t change, std::shared_ptr<LaneChange> by) {
   systems_->put_change(lane, change, by->start().data());
   walk_->followed.push_back({lane, change, std::move(by)});
 }
 
-void LaneRun::forget(std::size_t lane) {
+void SplittingLanes::forget(std::size_t lane) {
   std::erase_if(walk_->followed, [&](const Walk::Followed& one) { return one.lane == lane; });
 }
 
-bool LaneRun::advance(std::int64_t steps) {
+bool SplittingLanes::advance(std::int64_t steps) {
   const std::int64_t until = step() + steps;
   while (step() < until) {
     std::int64_t stride = until - step();
@@ -374,7 +338,7 @@ bool LaneRun::advance(std::int64_t steps) {
 }
 
 /// @param due  only changes that are to be measured at this step; else those that may be looked at
-void LaneRun::measure(bool due) {
+void SplittingLanes::measure(bool due) {
   constexpr std::size_t none = static_cast<std::size_t>(-1);
   alignas(64) double squares[2 * SystemLanes::lanes];
   std::size_t measured = none;
@@ -396,7 +360,7 @@ void LaneRun::measure(bool due) {
   }
 }
 
-void LaneRun::settle() {
+void SplittingLanes::settle() {
   if (!walk_->at.phase().opened) {  // then there is nothing to be completed
     systems_->show();
     systems_->go_on();
@@ -405,20 +369,20 @@ void LaneRun::settle() {
   measure(false);
 }
 
-void LaneRun::take(std::size_t lane, ParticleSystem<double>& s) const {
+void SplittingLanes::take(std::size_t lane, ParticleSystem<double>& s) const {
   systems_->take(lane, s);
   s.clock() = walk_->at.clock();
   s.clock().set_fraction(0);
   s.phase() = Phase{};
 }
 
-void LaneRun::keep() {
+void SplittingLanes::keep() {
   systems_->keep();
   walk_->kept.assign_state(walk_->at);
   for (const Walk::Followed& one : walk_->followed) one.by->keep();
 }
 
-void LaneRun::go_back() {
+void SplittingLanes::go_back() {
   systems_->go_back();
   walk_->at.assign_state(walk_->kept);
   for (const Walk::Followed& one : walk_->followed) one.by->go_back();

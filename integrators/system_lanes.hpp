@@ -2,11 +2,9 @@
 /// Eight systems of one make side by side, members of an ensemble, under a splitting method.
 
 #include "engine/concepts.hpp"
-#include "engine/outcome.hpp"
-#include "engine/particle_system.hpp"
 #include "forces/sum.hpp"
 #include "integrators/composition_options.hpp"
-#include "integrators/lane_change.hpp"
+#include "integrators/lane_run.hpp"
 #include "integrators/scheme.hpp"
 
 #include <cstddef>
@@ -78,33 +76,29 @@ std::unique_ptr<SystemLanes> systems_under_forces(const ForceField<double>& forc
 /// @param rate  v' = - rate v [1/time]
 std::unique_ptr<SystemLanes> with_drag(std::unique_ptr<SystemLanes> systems, double rate);
 
-/// Eight runs at once, step by step: a splitting method over systems in lanes, and changes that go along.
-class LaneRun {
+/// Eight runs at once by a splitting method over systems in lanes, and changes that go along.
+class SplittingLanes final : public LaneRun {
  public:
   /// @throws SchemeMismatch
-  LaneRun(std::unique_ptr<SystemLanes> systems, const Scheme& scheme, const CompositionOptions& options,
-          const Clock<double>& clock);
-  ~LaneRun();
-  LaneRun(const LaneRun&) = delete;
-  LaneRun& operator=(const LaneRun&) = delete;
-  LaneRun(LaneRun&&) noexcept;
+  SplittingLanes(std::unique_ptr<SystemLanes> systems, const Scheme& scheme, const CompositionOptions& options,
+                 const Clock<double>& clock);
+  ~SplittingLanes() override;
+  SplittingLanes(const SplittingLanes&) = delete;
+  SplittingLanes& operator=(const SplittingLanes&) = delete;
+  SplittingLanes(SplittingLanes&&) noexcept;
 
-  std::int64_t step() const;
-  SystemLanes& systems() { return *systems_; }
-
-  /// From here a change goes along with the system of a lane; `systems()` carry as many as there are of a lane.
-  void follow(std::size_t lane, std::size_t change, std::shared_ptr<LaneChange> by);
-  /// Nobody looks at the changes of a lane any more.
-  void forget(std::size_t lane);
-
-  /// Makes steps, up to one that fails in a lane. @return whether none has failed
-  bool advance(std::int64_t steps);
-  /// Completes a copy, which `take` tells of.
-  void settle();
-  /// Gives particles the settled state of a lane, and its clock.
-  void take(std::size_t lane, ParticleSystem<double>& s) const;
-  void keep();
-  void go_back();
+  std::int64_t step() const override;
+  void put(std::size_t lane, const ParticleSystem<double>& s) override { systems_->put(lane, s); }
+  void copy_lane(std::size_t from, std::size_t to) override { systems_->copy_lane(from, to); }
+  void carry(std::size_t changes) override { systems_->carry(changes); }
+  void follow(std::size_t lane, std::size_t change, std::shared_ptr<LaneChange> by) override;
+  void forget(std::size_t lane) override;
+  bool advance(std::int64_t steps) override;
+  const std::optional<Failure>& failure() const override { return systems_->failure(); }
+  void settle() override;
+  void take(std::size_t lane, ParticleSystem<double>& s) const override;
+  void keep() override;
+  void go_back() override;
 
  private:
   struct Walk;

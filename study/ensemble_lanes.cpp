@@ -5,6 +5,7 @@
 #include "forces/gr_potential.hpp"
 #include "forces/speed_of_light.hpp"
 #include "integrators/composition.hpp"
+#include "integrators/lane_method.hpp"
 #include "integrators/planet_systems.hpp"
 #include "integrators/system_lanes.hpp"
 #include "integrators/wisdom_holman.hpp"
@@ -29,7 +30,7 @@ namespace {
 constexpr std::int64_t longest_cut = 1024;
 /// Above, the lanes are better filled with particles.
 constexpr Index most_in_lanes = 64;
-constexpr std::size_t member_lanes = SystemLanes::lanes;
+constexpr std::size_t member_lanes = LaneRun::lanes;
 
 /// Arcs about a primary and kicks, split in coordinates and by nothing else.
 bool is_planetary(const Scene& scene) {
@@ -46,16 +47,27 @@ bool is_kicked(const Scene& scene) {
   return scene.hamiltonian.splitting.only_forces && claims.twists && claims.inertial && !claims.kepler;
 }
 
+std::string why_alone_by_method(const Scene& scene) {
+  const SceneIntegrator& integrator = scene.integrator;
+  if (!integrator.classical) return "";
+  if (scene.integrator.adaptive()) return fmt::format("the method '{}' chooses its steps", integrator.method);
+  if (!method_in_lanes(*integrator.classical)) return fmt::format("the method '{}' has no lanes", integrator.method);
+  return "";
+}
+
 std::string why_alone_by_hamiltonian(const Scene& scene) {
   const SceneHamiltonian& made = scene.hamiltonian;
-  if (!is_kicked(scene) && !is_planetary(scene)) {
+  if (!is_kicked(scene) && (!is_planetary(scene) || scene.integrator.classical)) {
     return fmt::format("the Hamiltonian '{}' has no lanes", made.splitting.name);
   }
   for (const SceneForce& force : made.forces) {
-    if (force.letter && force.force.claims().drag > 0) continue;
-    if (force.letter) return fmt::format("'{}' is a letter of its own, which has no lanes", force.name);
+    const bool split = !scene.integrator.classical;
+    if (force.letter && split && force.force.claims().drag > 0) continue;
+    if (force.letter && split) return fmt::format("'{}' is a letter of its own, which has no lanes", force.name);
     if (!force.force.has_lanes()) return fmt::format("the force '{}' is written for doubles only", force.name);
-    if (force.force.claims().velocity_dependent) return fmt::format("the force '{}' depends on velocities", force.name);
+    if (force.force.claims().velocity_dependent && split)
+      return fmt::format("the force '{}' depends on velocities", force.name);
+    if (force.force.claims().gyrates) return fmt::format("the force '{}' turns velocities", force.name);
     if (force.force.claims().range > 0) return fmt::format("the force '{}' has a cutoff", force.name);
     if (force.force.claims().bonded) return fmt::format("the force '{}' acts on bonds", force.name);
   }
@@ -87,6 +99,10 @@ std::string why_alone_by_monitors(const Scene& scene) {
     changes = 0;
     if (watch.monitor.make(watched).wanted().action) {
       return fmt::format("monitor '{}' asks for the action of the flows", watch.monitor.name);
+    }
+    if (changes > 0 && scene.integrator.classical) {
+      return fmt::format("monitor '{}' follows a small change, which goes along with splitting methods only",
+                         watch.monitor.name);
     }
     if (changes > 1) {
       return fmt::format("monitor '{}' follows {} vectors, of which one goes in lanes", watch.monitor.name, changes);
@@ -147,6 +163,16 @@ std::unique_ptr<SystemLanes> systems_of(const Scene& scene, const std::vector<st
     options.others = std::move(forces);
   }
   return finished(planet_systems(std::move(options), scene.particles));
+}
+
+/// What steps lanes of one make.
+std::unique_ptr<LaneRun> run_of(const Scene& scene, const std::vector<std::int64_t>& order) {
+  const SceneIntegrator& made = scene.integrator;
+  if (!made.classical) {
+    return std::make_unique<SplittingLanes>(systems_of(scene, order), scheme_of(made), made.composition,
+                                            clock_of(made));
+  }
+  return run_in_lanes(method_in_lanes(*made.classical), forces_of(scene), scene.particles, clock_of(made));
 }
 
 /// A member in a lane: its state as users see it, and who looks at it.
@@ -310,15 +336,14 @@ class Batch {
   explicit Batch(std::vector<std::unique_ptr<LaneMember>> members, const std::vector<std::int64_t>& order)
       : members_(std::move(members)),
         first_(members_[0]->scene()),
-        run_(systems_of(first_, order), scheme_of(first_.integrator), first_.integrator.composition,
-             clock_of(first_.integrator)),
+        run_(run_of(first_, order)),
         end_(*first_.integrator.steps) {
     for (std::size_t k = 0; k < member_lanes; ++k) {
-      run_.systems().put(k, members_[std::min(k, members_.size() - 1)]->scene().particles);
+      run_->put(k, members_[std::min(k, members_.size() - 1)]->scene().particles);
     }
     std::size_t changes = 0;
     for (const auto& one : members_) changes = std::max(changes, one->changes().size());
-    if (changes > 0) run_.systems().carry(changes);
+    if (changes > 0) run_->carry(changes);
   }
 
   /// @return whether it was not interrupted
@@ -332,15 +357,15 @@ class Batch {
         follow(k);
       }
     }
-    run_.keep();
+    run_->keep();
     replace_ended();
-    while (going() && run_.step() < end_) {
+    while (going() && run_->step() < end_) {
       if (stop != nullptr && stop->load(std::memory_order_relaxed)) return false;
       advance_to(next_cut());
       for (auto& one : members_) {
         if (!one->ended()) one->look();
       }
-      run_.keep();
+      run_->keep();
       replace_ended();
     }
     for (auto& one : members_) {
@@ -354,44 +379,44 @@ class Batch {
   void follow(std::size_t member) {
     const auto& changes = members_[member]->changes();
     for (std::size_t j = 0; j < changes.size(); ++j) {
-      if (changes[j]->begun()) run_.follow(member, j, changes[j]);
+      if (changes[j]->begun()) run_->follow(member, j, changes[j]);
     }
   }
   bool going() const {
     return std::any_of(members_.begin(), members_.end(), [](const auto& one) { return !one->ended(); });
   }
   std::int64_t next_cut() const {
-    std::int64_t cut = std::min(end_, run_.step() + longest_cut);
+    std::int64_t cut = std::min(end_, run_->step() + longest_cut);
     for (const auto& one : members_) {
-      if (!one->ended()) cut = std::min(cut, one->next(run_.step()));
+      if (!one->ended()) cut = std::min(cut, one->next(run_->step()));
     }
     return cut;
   }
   /// Gives the members who go on the settled states of their lanes.
   void settle() {
-    run_.settle();
+    run_->settle();
     for (std::size_t k = 0; k < members_.size(); ++k) {
-      if (!members_[k]->ended()) run_.take(k, members_[k]->now());
+      if (!members_[k]->ended()) run_->take(k, members_[k]->now());
     }
   }
   /// Steps to a cut. Where a lane fails on the way, each is looked at by itself, and those that did not fail go on.
   void advance_to(std::int64_t cut) {
     while (going()) {
-      const bool good = run_.advance(cut - run_.step()) && run_.step() == cut;
+      const bool good = run_->advance(cut - run_->step()) && run_->step() == cut;
       if (good) {
         settle();
         const bool finite = std::all_of(members_.begin(), members_.end(),
                                         [](const auto& one) { return one->ended() || !not_finite(one->now()); });
         if (finite) return;
       }
-      run_.go_back();
+      run_->go_back();
       bool failed = false;
       for (std::size_t k = 0; k < members_.size(); ++k) {
         if (!members_[k]->ended()) failed = fails(k, cut) || failed;
       }
       if (!failed) throw LogicError("a member of an ensemble fails beside others, but not by itself");
       replace_ended();
-      run_.keep();
+      run_->keep();
     }
   }
   /// Whether a member fails on the way to a cut, in all lanes by itself; then it has ended at the last whole step
@@ -399,21 +424,21 @@ class Batch {
   bool fails(std::size_t member, std::int64_t cut) {
     LaneMember& one = *members_[member];
     for (std::size_t k = 0; k < member_lanes; ++k) {
-      if (k != member) run_.systems().copy_lane(member, k);
+      if (k != member) run_->copy_lane(member, k);
     }
     std::optional<Failure> why;
     ParticleSystem<double> last = one.now();
-    while (run_.step() < cut && !why) {
-      if (!run_.advance(1)) why = run_.systems().failure();
-      run_.settle();
-      run_.take(member, one.now());
+    while (run_->step() < cut && !why) {
+      if (!run_->advance(1)) why = run_->failure();
+      run_->settle();
+      run_->take(member, one.now());
       const std::optional<Failure> bad = not_finite(one.now());
       if (bad && !(why && says_more(*why))) why = bad;
       if (!why) last.assign_state(one.now());
     }
     one.now().assign_state(last);
     if (why) one.fail(*why);
-    run_.go_back();
+    run_->go_back();
     return why.has_value();
   }
   /// What a force has named says more than what came of it.
@@ -424,19 +449,19 @@ class Batch {
   /// The lanes of members who have ended go with those of others: nothing in them may fail any more.
   void replace_ended() {
     for (std::size_t k = 0; k < members_.size(); ++k) {
-      if (members_[k]->ended()) run_.forget(k);
+      if (members_[k]->ended()) run_->forget(k);
     }
     std::size_t from = 0;
     while (from < members_.size() && members_[from]->ended()) ++from;
     if (from == members_.size()) return;
     for (std::size_t k = 0; k < member_lanes; ++k) {
-      if (k >= members_.size() || members_[k]->ended()) run_.systems().copy_lane(from, k);
+      if (k >= members_.size() || members_[k]->ended()) run_->copy_lane(from, k);
     }
   }
 
   std::vector<std::unique_ptr<LaneMember>> members_;
   const Scene& first_;
-  LaneRun run_;
+  std::unique_ptr<LaneRun> run_;
   std::int64_t end_;
 };
 
@@ -460,7 +485,7 @@ std::string why_alone(const Scene& scene) {
   const SceneIntegrator& integrator = scene.integrator;
   const ParticleSystem<double>& s = scene.particles;
   if (scene.system) return "a system of first order has no lanes";
-  if (integrator.classical) return fmt::format("the method '{}' has no lanes", integrator.method);
+  if (const std::string of_method = why_alone_by_method(scene); !of_method.empty()) return of_method;
   if (!integrator.steps || integrator.step == 0) return "the run has no number of steps";
   if (!integrator.decorators.empty()) {
     return fmt::format("'{}' around the method has no lanes", integrator.decorators.front().name);

@@ -69,6 +69,9 @@ template <class Real> class Collocation final : public Method<Real> {
   /// Goes on where the same method, computed in another way, stands: rounding errors of y, shape (size), and rates of
   /// the step of `h` that led there, shape (n, 8); of 0 if nothing is to be taken from them.
   void go_on_from(const AlignedVector<Real>& low, const AlignedVector<Real>& rates, double h);
+  /// Where the other way goes on from here: rounding errors of y, and rates of the last step.
+  const AlignedVector<Real>& low() const { return low_; }
+  const AlignedVector<Real>& rates() const { return previous_; }
 
  private:
   enum class Sweeps : std::uint8_t { converged, diverged };

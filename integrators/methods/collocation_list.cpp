@@ -9,15 +9,13 @@ namespace methods {
 
 namespace {
 
-int stages_of(std::string_view name) { return name == "implicit_midpoint" ? 1 : name.back() - '0'; }
-
 template <class Real> std::unique_ptr<Method<Real>> gauss(const MethodInfo& info, const MethodOptions& options) {
-  return std::make_unique<Collocation<Real>>(info, options, gauss_table(stages_of(info.name)), true);
+  return std::make_unique<Collocation<Real>>(info, options, *collocation_of(info.name), true);
 }
 /// Gauss's methods of six stages and more have a form of their own for gravity; with fewer, errors at rounding are no
 /// larger without it, since steps are so much shorter.
 std::unique_ptr<Method<double>> gauss_of_gravity(const MethodInfo& info, const MethodOptions& options) {
-  return std::make_unique<GravityGauss>(info, options, gauss_table(stages_of(info.name)), true);
+  return std::make_unique<GravityGauss>(info, options, *collocation_of(info.name), true);
 }
 std::unique_ptr<Method<double>> radau(const MethodInfo& info, const MethodOptions& options) {
   return std::make_unique<GravityGauss>(info, options, radau_left_table(), false);

@@ -172,4 +172,12 @@ const CollocationTable& radau_left_table() {
   return table;
 }
 
+const CollocationTable* collocation_of(std::string_view name) {
+  if (name == "implicit_midpoint") return &gauss_table(1);
+  if (name == "gauss_radau_15") return &radau_left_table();
+  constexpr std::string_view gauss = "gauss_";
+  const bool one_digit = name.starts_with(gauss) && name.size() == gauss.size() + 1;
+  return one_digit && name.back() >= '2' && name.back() <= '8' ? &gauss_table(name.back() - '0') : nullptr;
+}
+
 }  // namespace noether

@@ -3,6 +3,7 @@
 
 #include "numbers/real.hpp"
 
+#include <string_view>
 #include <vector>
 
 namespace noether {
@@ -33,5 +34,8 @@ const CollocationTable& lobatto_table(int stages);
 
 /// The eight nodes of Radau with the left end among them, those of IAS15: order 15.
 const CollocationTable& radau_left_table();
+
+/// The table of a method of the list of collocations; null for another name.
+const CollocationTable* collocation_of(std::string_view name);
 
 }  // namespace noether

@@ -1,0 +1,111 @@
+#include "integrators/lane_method.hpp"
+
+#include "integrators/particle_vector.hpp"
+
+#include <utility>
+
+namespace noether {
+
+std::unique_ptr<LaneMethod> method_in_lanes(const MethodChoice& choice) {
+  if (choice.info->is_adaptive(choice.options)) return nullptr;
+  for (const auto& family : {lane_methods::runge_kutta, lane_methods::nystrom, lane_methods::collocation}) {
+    if (auto made = family(choice)) return made;
+  }
+  return nullptr;
+}
+
+namespace {
+
+void copy_lane_of(LaneNumbers& numbers, std::size_t from, std::size_t to) {
+  for (std::size_t at = 0; at < numbers.size(); at += LaneField::lanes) numbers[at + to] = numbers[at + from];
+}
+
+/// A method over eight systems. At whole steps there is nothing to complete: the settled state is y.
+class MethodLanes final : public LaneRun {
+ public:
+  MethodLanes(std::unique_ptr<LaneMethod> method, ForceField<double> forces, const ParticleSystem<double>& like,
+              const Clock<double>& clock)
+      : method_(std::move(method)),
+        field_(std::move(forces), like),
+        y_(2 * lanes * static_cast<std::size_t>(field_.size())),
+        clock_(clock),
+        kept_clock_(clock) {}
+
+  std::int64_t step() const override { return clock_.step(); }
+
+  void put(std::size_t lane, const ParticleSystem<double>& s) override {
+    field_.put_masses(lane, s);
+    detail::gather_particles(s, one_);
+    for (Index i = 0; i < one_.size(); ++i) y_[lanes * static_cast<std::size_t>(i) + lane] = one_[i];
+  }
+  void take(std::size_t lane, ParticleSystem<double>& s) const override {
+    Vector<double> of_lane(2 * field_.size());
+    for (Index i = 0; i < of_lane.size(); ++i) of_lane[i] = y_[lanes * static_cast<std::size_t>(i) + lane];
+    detail::scatter_particles(of_lane, s);
+    s.clock() = clock_;
+    s.phase() = Phase{};
+  }
+  void copy_lane(std::size_t from, std::size_t to) override {
+    field_.copy_masses(from, to);
+    copy_lane_of(y_, from, to);
+    if (!begun_) return;
+    for (LaneNumbers* numbers : method_->memory()) copy_lane_of(*numbers, from, to);
+  }
+
+  void carry(std::size_t /*changes*/) override { throw Error("small changes do not go along with a method in lanes"); }
+  void follow(std::size_t /*lane*/, std::size_t /*change*/, std::shared_ptr<LaneChange> /*by*/) override {
+    throw LogicError("a small change was given to a method in lanes");
+  }
+  void forget(std::size_t /*lane*/) override {}
+
+  bool advance(std::int64_t steps) override {
+    if (!begun_ && steps > 0) method_->begin(field_, clock_.time(), clock_.dt(), y_);
+    begun_ = begun_ || steps > 0;
+    for (std::int64_t made = 0; made < steps; ++made) {
+      const std::optional<Failure> failure = method_->step(field_, clock_.time(), y_);
+      if (failure_ || field_.failure() || failure) {
+        if (!failure_) failure_ = field_.failure() ? field_.failure() : failure;
+        return false;
+      }
+      clock_.tick(0.0);
+    }
+    return true;
+  }
+  const std::optional<Failure>& failure() const override { return failure_; }
+  void settle() override {}
+  void keep() override {
+    kept_clock_ = clock_;
+    field_.keep();
+    kept_.clear();
+    kept_.push_back(y_);
+    if (!begun_) return;
+    for (const LaneNumbers* numbers : method_->memory()) kept_.push_back(*numbers);
+  }
+  void go_back() override {
+    clock_ = kept_clock_;
+    y_ = kept_[0];
+    begun_ = kept_.size() > 1 || method_->memory().empty();
+    for (std::size_t k = 1; k < kept_.size(); ++k) *method_->memory()[k - 1] = kept_[k];
+    failure_.reset();
+    field_.go_back();
+  }
+
+ private:
+  std::unique_ptr<LaneMethod> method_;
+  LaneField field_;
+  LaneNumbers y_;
+  Clock<double> clock_, kept_clock_;
+  bool begun_ = false;
+  std::vector<LaneNumbers> kept_;  ///< y and, once it has begun, what the method remembers
+  Vector<double> one_;
+  std::optional<Failure> failure_;
+};
+
+}  // namespace
+
+std::unique_ptr<LaneRun> run_in_lanes(std::unique_ptr<LaneMethod> method, ForceField<double> forces,
+                                      const ParticleSystem<double>& like, const Clock<double>& clock) {
+  return std::make_unique<MethodLanes>(std::move(method), std::move(forces), like, clock);
+}
+
+}  // namespace noether

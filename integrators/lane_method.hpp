@@ -1,0 +1,47 @@
+#pragma once
+/// Classical methods of fixed steps over eight systems at once.
+
+#include "integrators/lane_field.hpp"
+#include "integrators/lane_run.hpp"
+#include "integrators/method.hpp"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace noether {
+
+/// A method as `Method`, of steps of one length, for q'' = a(t, q, v) of eight systems side by side: y = (q, v), shape
+/// (2 n, 8).
+///
+/// No lane takes anything from another one. Where lanes need different numbers of iterations, those that are done wait,
+/// and what they hold stays.
+class LaneMethod {
+ public:
+  virtual ~LaneMethod() = default;
+  /// What it remembers from step to step beside y, of shapes (., 8): sized by `begin`.
+  virtual std::vector<LaneNumbers*> memory() { return {}; }
+  /// Before the first step, of length h, from y(t).
+  virtual void begin(LaneField& f, double t, double h, const LaneNumbers& y) = 0;
+  /// Goes from y(t) to y(t + h) in place, h always that of `begin`.
+  /// @return why it could not, in one lane at least; failures of the field are told there
+  virtual std::optional<Failure> step(LaneField& f, double t, LaneNumbers& y) = 0;
+};
+
+/// What a method is in lanes; null for one that has none, and for steps of the method's own choice.
+std::unique_ptr<LaneMethod> method_in_lanes(const MethodChoice& choice);
+
+/// Eight runs at once, by a method over systems under forces.
+/// @param like  one of the systems; all have its size and its ids
+/// @throws Error  for forces that have no lanes, or cannot act on these particles
+std::unique_ptr<LaneRun> run_in_lanes(std::unique_ptr<LaneMethod> method, ForceField<double> forces,
+                                      const ParticleSystem<double>& like, const Clock<double>& clock);
+
+namespace lane_methods {
+// The families, each in a file of its own; null for a method of another one.
+std::unique_ptr<LaneMethod> runge_kutta(const MethodChoice& choice);
+std::unique_ptr<LaneMethod> nystrom(const MethodChoice& choice);
+std::unique_ptr<LaneMethod> collocation(const MethodChoice& choice);
+}  // namespace lane_methods
+
+}  // namespace noether

@@ -1,0 +1,189 @@
+// Classical methods of fixed steps in lanes: the bits of a member alone, whoever stands beside it, and the run of the
+// scene to rounding.
+
+#include "integrators/all_methods.hpp"
+#include "integrators/lane_method.hpp"
+#include "tests/ensemble/support.hpp"
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace noether::test {
+namespace {
+
+const std::string gravity = "type = \"kinetic_potential\"\n[[hamiltonian.force]]\ntype = \"gravity\"\n";
+const std::string oblate = "[[hamiltonian.force]]\ntype = \"oblateness\"\nJ2 = 1e-3\nradius = 0.01\n";
+const std::string relativity = "[[hamiltonian.force]]\ntype = \"post_newtonian\"\nc = 100\n";
+
+/// The key that a method needs to make steps of one length.
+std::string fixed(const std::string& method) {
+  return noether::method(method).info->adaptive ? "adaptive = false\n" : "";
+}
+
+/// Planets under forces and a method.
+std::string stepped(const std::string& forces, const std::string& method, int steps = 200) {
+  const std::string text = replaced(planets(forces, method, steps), "step = 0.1\n", "step = 0.1\n" + fixed(method));
+  return forces == gravity + relativity ? replaced(text, "type = \"energy\"", "type = \"angular_momentum\"") : text;
+}
+
+/// A ball on a spring that it makes harder or softer by its mass.
+std::string ball(const std::string& method, double step, int steps) {
+  return R"(units = "reduced"
+[particles]
+body = [{ name = "ball", mass = 1, x = [1, 0, 0], v = [0, 0, 0] }]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "harmonic_field"
+k = 1
+[integrator]
+method = ")" +
+         method + "\"\n" + fixed(method) + "step = " + std::to_string(step) + "\nsteps = " + std::to_string(steps) +
+         "\n";
+}
+
+TEST_CASE("explicit methods in lanes have the bits of each member alone", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  const auto check = [&](const std::string& forces, const std::string& method) {
+    INFO(forces << " " << method);
+    write_text(folder / "scene.toml", stepped(forces, method, 60));
+    REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
+    check_company(EnsembleScene(folder / "scene.toml", plan_of(near), {}, true, standard_parts()), 16);
+  };
+  check(gravity, "rk4");
+  check(gravity + relativity, "dormand_prince_5");  // its last stage is state
+  check(gravity + oblate, "dprkn_12");
+}
+
+TEST_CASE("collocation in lanes has the bits of each member alone, however many sweeps the others take",
+          "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  // Near-parabolic arcs and encounters, at which sweeps do not converge and a member goes on by Newton's iteration,
+  // beside members of a few sweeps a step.
+  const auto check = [&](const std::string& forces, const std::string& method) {
+    INFO(forces << " " << method);
+    write_text(folder / "scene.toml", stepped(forces, method, 60));
+    REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
+    check_company(EnsembleScene(folder / "scene.toml", plan_of(near), {}, true, standard_parts()), 16);
+  };
+  check(gravity, "gauss_3");
+  check(gravity + oblate, "implicit_midpoint");
+  check(gravity + relativity, "gauss_8");
+}
+
+TEST_CASE("classical methods in lanes are the runs of their scenes to rounding", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  const auto of = [&](const std::string& forces, const std::string& method) {
+    INFO(forces << " " << method);
+    write_text(folder / "scene.toml", stepped(forces, method));
+    const EnsembleScene scene(folder / "scene.toml", plan_of(calm), {}, true, standard_parts());
+    REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
+    const double most = difference(scene, {0, 1, 2, 3, 4, 5, 6, 7});
+    CHECK(most > 0);  // other code: else lanes were not used
+    return most;
+  };
+  // 200 steps are three revolutions, as for splitting methods.
+  for (const char* method : {"rk4", "dormand_prince_5", "cash_karp_5", "dop853", "dprkn_12"}) {
+    CHECK(of(gravity, method) <= 2e-13);
+  }
+  for (const char* method : {"implicit_midpoint", "gauss_2", "gauss_5", "gauss_8", "gauss_radau_15"}) {
+    CHECK(of(gravity, method) <= 2e-13);
+  }
+  CHECK(of(gravity + oblate, "dprkn_12") <= 2e-13);
+  CHECK(of(gravity + relativity, "dop853") <= 2e-13);
+  CHECK(of(gravity + relativity, "gauss_4") <= 2e-13);
+  CHECK(of(gravity + "[[hamiltonian.force]]\ntype = \"linear_drag\"\nrate = 1e-3\n", "gauss_4") <= 2e-13);
+}
+
+TEST_CASE("a step in lanes is the one of the method, whose order it has", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  // A ball over the same time by steps of two lengths: x = cos(omega t), and errors in the ratio 2^order.
+  const auto error_of = [&](const std::string& method, int steps) {
+    write_text(folder / "scene.toml", ball(method, 2.0 / steps, steps));
+    const EnsembleScene scene(folder / "scene.toml", plan_of({"particles.body.ball.mass=1:1.5:2"}), {}, true,
+                              standard_parts());
+    REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
+    double worst = 0;
+    const std::vector<io::EnsembleRow> rows = rows_together(scene, {0, 1});
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double omega = 1 / std::sqrt(k == 0 ? 1.0 : 1.5);
+      worst = std::max(worst, std::abs(values_of(scene, rows[k], "position")[0] - std::cos(omega * 2.0)));
+    }
+    return worst;
+  };
+  const auto order_of = [&](const std::string& method, int steps) {
+    INFO(method);
+    return std::log2(error_of(method, steps) / error_of(method, 2 * steps));
+  };
+  CHECK(std::abs(order_of("euler", 40) - 1) < 0.1);
+  CHECK(std::abs(order_of("heun", 10) - 2) < 0.1);
+  CHECK(std::abs(order_of("rk4", 10) - 4) < 0.1);
+  CHECK(std::abs(order_of("implicit_midpoint", 10) - 2) < 0.1);
+  CHECK(std::abs(order_of("gauss_2", 10) - 4) < 0.1);
+  CHECK(std::abs(order_of("gauss_3", 4) - 6) < 0.2);
+}
+
+TEST_CASE("a member in lanes whose sweeps do not converge goes on by Newton's iteration", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  // h omega from 10 to 1.4: sweeps converge below 2, that of the last mass.
+  write_text(folder / "scene.toml", ball("gauss_2", 10, 100));
+  const EnsembleScene scene(folder / "scene.toml", plan_of({"particles.body.ball.mass=1:50:8"}), {}, true,
+                            standard_parts());
+  REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
+  check_company(scene, 8);
+  // A linear problem, whose stages both find to rounding.
+  CHECK(difference(scene, {0, 1, 2, 3, 4, 5, 6, 7}) <= 1e-12);
+  for (const io::EnsembleRow& row : rows_together(scene, {0, 3, 7}))
+    CHECK(row.outcome == static_cast<std::int64_t>(Outcome::Kind::completed));
+}
+
+TEST_CASE("members that fail under methods in lanes end as they do alone", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  write_text(folder / "scene.toml", ball("rk4", 10, 1000));
+  const EnsembleScene scene(folder / "scene.toml", plan_of({"particles.body.ball.mass=1:50:8"}), {}, true,
+                            standard_parts());
+  std::vector<std::int64_t> members = {0, 1, 2, 3, 4, 5, 6, 7};
+  const std::vector<io::EnsembleRow> rows = rows_together(scene, members);
+  std::size_t diverged = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto alone = run_members(scene, {&members[k], 1}, false, nullptr);
+    CHECK(rows[k].outcome == alone[0].row->outcome);
+    CHECK(rows[k].step == alone[0].row->step);
+    CHECK(rows_together(scene, {members[k]})[0].bytes() == rows[k].bytes());
+    diverged += rows[k].outcome == static_cast<std::int64_t>(Outcome::Kind::diverged) ? 1 : 0;
+  }
+  CHECK(diverged == 2);  // h omega above 2.83: masses 1 and 8
+}
+
+TEST_CASE("every method of a family that has lanes has them", "[ensemble][lanes]") {
+  std::set<std::string> in_lanes;
+  for (const MethodInfo* info : methods::all()) {
+    const MethodChoice choice{info, {.adaptive = info->adaptive ? std::optional(false) : std::nullopt}};
+    if (info->fixed && method_in_lanes(choice)) in_lanes.insert(std::string(info->name));
+  }
+  for (const MethodInfo& info : methods::collocation_list()) CHECK(in_lanes.contains(std::string(info.name)));
+  for (const MethodInfo& info : methods::runge_kutta_list()) CHECK(in_lanes.contains(std::string(info.name)));
+  for (const MethodInfo& info : methods::nystrom_list()) CHECK(in_lanes.contains(std::string(info.name)));
+  CHECK_FALSE(method_in_lanes(method("gauss_8")));  // steps of its own choice
+  CHECK_FALSE(method_in_lanes(method("adams_bashforth_2")));
+}
+
+TEST_CASE("methods that go one by one say why", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  const auto why = [&](const std::string& text) {
+    write_text(folder / "scene.toml", text);
+    return why_alone(load_scene(folder / "scene.toml"));
+  };
+  CHECK(why(stepped(gravity, "rk4")).empty());
+  CHECK(why(replaced(planets(gravity, "dop853"), "step = 0.1\nsteps = 200", "until = 20")) ==
+        "the method 'dop853' chooses its steps");
+  CHECK(why(stepped("type = \"wisdom_holman\"", "rk4")) == "the Hamiltonian 'wisdom_holman' has no lanes");
+  CHECK(why(stepped(gravity, "adams_bashforth_2")) == "the method 'adams_bashforth_2' has no lanes");
+  CHECK(why(stepped(gravity, "rk4") + "[[every]]\ntype = \"megno\"\nsteps = 10\n") ==
+        "monitor 'megno' follows a small change, which goes along with splitting methods only");
+}
+
+}  // namespace
+}  // namespace noether::test
