@@ -19,6 +19,7 @@
 #include "engine/given_orbit.hpp"
 #include "engine/simulation.hpp"
 #include "engine/sites.hpp"
+#include "engine/sphere_columns.hpp"
 #include "engine/statistics.hpp"
 #include "engine/topology.hpp"
 #include "forces/anharmonic_chain.hpp"
@@ -51,6 +52,7 @@
 #include "integrators/minimize.hpp"
 #include "integrators/projected.hpp"
 #include "integrators/rotating.hpp"
+#include "integrators/shearing_sheet.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/systems/schwarzschild.hpp"
 #include "integrators/systems/weber.hpp"
@@ -68,6 +70,7 @@
 #include "monitors/orbital_monitors.hpp"
 #include "monitors/pressure.hpp"
 #include "monitors/radial_distribution.hpp"
+#include "monitors/ring_monitors.hpp"
 #include "monitors/shadow_hamiltonian.hpp"
 #include "monitors/spin.hpp"
 #include "monitors/temperature.hpp"
@@ -81,6 +84,7 @@
 #include "scene/builders.hpp"
 #include "scene/constrained.hpp"
 #include "scene/ionic_crystal.hpp"
+#include "scene/ring_patch.hpp"
 #include "scene/run.hpp"
 #include "scene/water_box.hpp"
 
@@ -92,6 +96,7 @@
 #include <complex>
 #include <cstdint>
 #include <cstdio>
+#include <fstream>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -198,6 +203,9 @@ namespace examples::lj_melt {
 namespace examples::oblate_saturn {
 #include "examples/oblate_saturn/main.cpp"
 }
+namespace examples::moonlet {
+#include "examples/moonlet/main.cpp"
+}
 namespace examples::outer_solar_system {
 #include "examples/outer_solar_system/main.cpp"
 }
@@ -215,6 +223,9 @@ namespace examples::pythagorean {
 }
 namespace examples::rigid_water {
 #include "examples/rigid_water/main.cpp"
+}
+namespace examples::saturn_rings {
+#include "examples/saturn_rings/main.cpp"
 }
 namespace examples::schwarzschild {
 #include "examples/schwarzschild/main.cpp"
