@@ -36,8 +36,8 @@ void SphereContacts::bind(ParticleSystem<double>& s, const SheetRates& rates) {
     if (shortest < 5 * largest_) {
       throw Error(
           fmt::format("the box has an edge of {}, but a sphere of radius {} could meet two images of another one "
-                      "in less than 5 radii; make the box larger",
-                      shortest, largest_));
+                      "in less than 5 radii; make each edge {} or more",
+                      shortest, largest_, 5 * largest_));
     }
   }
   refuse_overlaps(s);

@@ -18,7 +18,9 @@
 namespace noether {
 namespace {
 
+using test::deepest_overlap;
 using test::sheet_of_spheres;
+using test::total_contacts;
 
 /// A free particle after a time, by the closed form of an epicycle about its guiding centre.
 struct Place {
@@ -162,29 +164,6 @@ class ByPairs {
   int contacts_ = 0;
 };
 
-double total_contacts(const ParticleSystem<double>& s) { return s.column<ContactCount>().all().sum() / 2; }
-
-/// The deepest overlap of two spheres through all images, by pairs.
-double deepest_overlap(const ParticleSystem<double>& s, double Omega) {
-  double deepest = 0;
-  const Vec3<double> edges = s.box().edges();
-  const double slide = 1.5 * Omega * s.time() * edges[0];
-  for (Index i = 0; i < s.size(); ++i) {
-    for (Index j = i + 1; j < s.size(); ++j) {
-      const Vec3<double> d = std::as_const(s).positions()[j] - std::as_const(s).positions()[i];
-      const double touch = s.column<BodyRadius>()[i] + s.column<BodyRadius>()[j];
-      for (int a = -1; a <= 1; ++a) {
-        const double x = d[0] + a * edges[0];
-        double y = d[1] - a * slide;
-        y -= edges[1] * std::nearbyint(y / edges[1]);
-        const double z = d[2] - edges[2] * std::nearbyint(d[2] / edges[2]);
-        deepest = std::max(deepest, 1 - std::sqrt(x * x + y * y + z * z) / touch);
-      }
-    }
-  }
-  return deepest;
-}
-
 }  // namespace
 
 TEST_CASE("contacts of spheres are those of a search by pairs", "[integrators][hard_spheres]") {
@@ -267,31 +246,14 @@ TEST_CASE("two spheres of a sheet meet where their epicycles say", "[integrators
 }
 
 TEST_CASE("spheres keep momentum in contacts, elastic ones energy", "[integrators][hard_spheres]") {
-  // The sums of m x' and m w turn as those of one free particle, whatever spheres do to each other; in open space the
-  // energy in the turning frame is that of the start.
+  // In open space the energy in the turning frame is that of the start.
   const double h = 0.05;
   const int steps = 400;
   auto s = test::patch({.count = 60, .thickness = 3, .speed = 1});
-  const auto sums = [](const ParticleSystem<double>& of) {
-    Vec3<double> sum(0, 0, 0);
-    for (Index i = 0; i < of.size(); ++i) {
-      const Vec3<double> v = of.velocities()[i];
-      sum += of.masses()[i] * Vec3<double>(v[0], v[1] + 1.5 * of.unwrapped(i)[0], v[2]);
-    }
-    return sum;
-  };
-  const auto height = [](const ParticleSystem<double>& of) {
-    double sum = 0;
-    for (Index i = 0; i < of.size(); ++i) sum += of.masses()[i] * of.unwrapped(i)[2];
-    return sum;
-  };
-  const Vec3<double> before = sums(s);
+  const test::SheetMomentum before(s, 1);
   const auto after = test::run(sheet_of_spheres({}, {.restitution = 0.5}), schemes::verlet, s, h, steps);
   CHECK(total_contacts(after) > 300);
-  const double c = std::cos(h * steps), sine = std::sin(h * steps);
-  const Vec3<double> turned(before[0] * c + 2 * before[1] * sine, before[1] * c - before[0] / 2 * sine,
-                            before[2] * c - height(s) * sine);
-  const Vec3<double> error = sums(after) - turned;
+  const Vec3<double> error = test::SheetMomentum(after, 1).sum - before.turned(h * steps, 1);
   CHECK(error.cwiseAbs().maxCoeff() <= 1e-12);
 
   s.set_box(Box::open());
@@ -300,6 +262,11 @@ TEST_CASE("spheres keep momentum in contacts, elastic ones energy", "[integrator
   const auto scattered = test::run(elastic, schemes::verlet, s, h, 40);
   CHECK(total_contacts(scattered) > 30);
   CHECK(std::abs(elastic.energy(scattered).total() - energy) <= 1e-12 * std::abs(energy));
+  // So monitors tell an error of the energy, of elastic spheres alone.
+  CHECK_FALSE(elastic.claims().dissipative);
+  CHECK(sheet_of_spheres({}, {.restitution = 0.99}).claims().dissipative);
+  const HardSpheres slower{.restitution = 1, .restitution_exponent = -0.1, .restitution_speed = 1};
+  CHECK(sheet_of_spheres({}, slower).claims().dissipative);
 }
 
 TEST_CASE("spheres have the same bits where a box is cut elsewhere, over threads, cadences and saves",

@@ -7,8 +7,11 @@
 #include "numbers/random.hpp"
 #include "tests/support/sheets.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace noether::test {
 
@@ -63,5 +66,52 @@ inline ParticleSystem<double> patch(const Patch& wanted) {
   }
   return s;
 }
+
+inline double total_contacts(const ParticleSystem<double>& s) { return s.column<ContactCount>().all().sum() / 2; }
+
+/// The deepest overlap of two spheres through all images, as a share of the distance of their centres at contact, by
+/// pairs.
+inline double deepest_overlap(const ParticleSystem<double>& s, double Omega) {
+  double deepest = 0;
+  const bool boxed = s.box().is_periodic();
+  const Vec3<double> edges = boxed ? s.box().edges() : Vec3<double>::Ones();
+  const double slide = 1.5 * Omega * s.time() * edges[0];
+  for (Index i = 0; i < s.size(); ++i) {
+    for (Index j = i + 1; j < s.size(); ++j) {
+      const Vec3<double> d = std::as_const(s).positions()[j] - std::as_const(s).positions()[i];
+      const double touch = s.column<BodyRadius>()[i] + s.column<BodyRadius>()[j];
+      for (int a = -1; a <= 1; ++a) {
+        if (!boxed && a != 0) continue;
+        const double x = d[0] + a * edges[0];
+        double y = d[1] - a * slide, z = d[2];
+        if (boxed) y -= edges[1] * std::nearbyint(y / edges[1]), z -= edges[2] * std::nearbyint(z / edges[2]);
+        deepest = std::max(deepest, 1 - std::sqrt(x * x + y * y + z * z) / touch);
+      }
+    }
+  }
+  return deepest;
+}
+
+/// Sums of m (v_x, w, v_z) and of m z, with w the speed along y about the shear: they turn as those of one free
+/// particle, whatever spheres do to each other.
+struct SheetMomentum {
+  Vec3<double> sum = Vec3<double>::Zero();
+  double height = 0, size = 0;  ///< size: sum of m |(v_x, w, v_z)|
+
+  SheetMomentum(const ParticleSystem<double>& s, double Omega) {
+    for (Index i = 0; i < s.size(); ++i) {
+      const Vec3<double> v = s.velocities()[i], x = s.unwrapped(i);
+      const Vec3<double> u(v[0], v[1] + 1.5 * Omega * x[0], v[2]);
+      sum += s.masses()[i] * u;
+      size += s.masses()[i] * u.norm();
+      height += s.masses()[i] * x[2];
+    }
+  }
+  /// After a time, with Omega_z = Omega.
+  Vec3<double> turned(double time, double Omega) const {
+    const double c = std::cos(Omega * time), sine = std::sin(Omega * time);
+    return {sum[0] * c + 2 * sum[1] * sine, sum[1] * c - sum[0] / 2 * sine, sum[2] * c - Omega * height * sine};
+  }
+};
 
 }  // namespace noether::test
