@@ -54,6 +54,8 @@ struct HardSpheres {
   /// @throws Error  for a negative radius, and where no particle has one
   template <class Real> void check(const ParticleSystem<Real>& s) const;
 
+  /// Whether contacts cost energy.
+  bool dissipates() const { return restitution < 1 || restitution_exponent != 0; }
   /// The speed of rebound for a speed of approach, 0 or more. @param least  where `minimum_rebound` is not given
   double rebound(double approach, double least) const;
 };
@@ -67,7 +69,7 @@ struct SphereForce {
   ForceClaims claims() const {
     return {.energy = true,
             .velocity_dependent = true,
-            .dissipative = true,
+            .dissipative = spheres.dissipates(),
             .periodic = true,
             .charges = false,
             .exclusions = false};

@@ -79,7 +79,7 @@ template <class F, class Real = double> class ShearingSheet {
     claims.keeps_momentum = claims.keeps_angular_momentum = false;
     if (spheres_) {
       claims.irreversible = "A";
-      claims.dissipative = true;
+      claims.dissipative = spheres_->law().dissipates();
       claims.symplectic = false;
       claims.columns = true;
       claims.no_action = "hard spheres rebound in no time, so the motion has no action";
@@ -87,7 +87,7 @@ template <class F, class Real = double> class ShearingSheet {
     if (!boxed_) return claims;
     claims.coordinates = unsheared;
     claims.inertial = false;
-    claims.time_dependent = forces_act_;  // where the images are
+    claims.time_dependent = forces_act_ || spheres_;  // where the images are
     claims.no_action = "the coordinates of a sheet in a box move with its shear, and have no action";
     return claims;
   }

@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace noether {
 
@@ -124,10 +126,13 @@ bool is_accurate(const std::optional<double>& error, const std::optional<double>
   return below ? within(error, below, {}) : !above || within(error, above, {});
 }
 
-/// Frequencies of the start; none where forces are not finite there, as where bodies touch: the run then ends by name.
-Spectrum spectrum_of_start(const Scene& scene) {
+/// Frequencies of the start, and whether the rates of the scene are linear; nothing where forces are not finite there,
+/// as where bodies touch (the run then ends by name), or where spheres rebound, which has no rates.
+std::pair<Spectrum, bool> rates_of_start(const Scene& scene) {
+  if (!scene.hamiltonian.constraints.empty()) return {};
   try {
-    return spectrum_at(scene, scene.particles);
+    const Spectrum spectrum = spectrum_at(scene, scene.particles);
+    return {spectrum, is_linear(scene)};
   } catch (const Error&) {
     return {};
   }
@@ -137,13 +142,8 @@ Spectrum spectrum_of_start(const Scene& scene) {
 class Judge {
  public:
   Judge(const Scene& scene, const SceneVerdict& verdict, const SuiteOptions& options, Share place)
-      : scene_(scene),
-        verdict_(verdict),
-        options_(options),
-        place_(std::move(place)),
-        spectrum_(spectrum_of_start(scene)) {
-    if (!scene.hamiltonian.constraints.empty()) spectrum_ = {};
-    bounds_.linear = scene.hamiltonian.constraints.empty() && is_linear(scene);
+      : scene_(scene), verdict_(verdict), options_(options), place_(std::move(place)) {
+    std::tie(spectrum_, bounds_.linear) = rates_of_start(scene);
     if (spectrum_.fastest > 0) bounds_.frequency = spectrum_.fastest;
   }
 
@@ -247,8 +247,8 @@ std::filesystem::path suite_folder() {
   // First the file that this function stands in: in Python that is the module. Of a program it may lack the folder.
   Dl_info here{};
   const bool known = dladdr(reinterpret_cast<const void*>(&suite_folder), &here) != 0 && here.dli_fname != nullptr;
-  for (const std::filesystem::path& file : {std::filesystem::path(known ? here.dli_fname : ""),
-                                            std::filesystem::read_symlink("/proc/self/exe", ignored)}) {
+  for (const std::filesystem::path& file :
+       {std::filesystem::path(known ? here.dli_fname : ""), std::filesystem::read_symlink("/proc/self/exe", ignored)}) {
     if (!file.is_absolute()) continue;
     const std::filesystem::path whole = std::filesystem::weakly_canonical(file, ignored);
     for (std::filesystem::path at = whole.parent_path(); !at.empty(); at = at.parent_path()) {

@@ -191,5 +191,18 @@ TEST_CASE("of two rocks a light one goes its way, and where they touch the run e
   CHECK(ended == 1);
 }
 
+TEST_CASE("spheres of a sheet bounce, come to rest, or end the run as they pile up", "[suite]") {
+  const Suite suite = run_suite({std::string(NOETHER_SOURCE_DIR) + "/study/suite/hard_spheres.toml"});
+  int ended = 0;
+  for (const SuiteRow& row : suite.rows) {
+    CAPTURE(row.method, row.sets, row.found, row.energy_error.value_or(-1), row.message);
+    CHECK(row.agrees);
+    if (row.expected != "solver") continue;
+    ++ended;
+    CHECK_THAT(row.message, Catch::Contains("spheres pile up: they touch more than 1000 times each in one flow"));
+  }
+  CHECK(ended == 1);
+}
+
 }  // namespace
 }  // namespace noether::test
