@@ -30,7 +30,7 @@ double value_of(const io::EnsembleTable& table, const io::EnsembleRow& row, cons
   return NAN;
 }
 
-std::string refusal_of(const ScratchFolder& folder, const PlotOptions& options) {
+std::string plot_refusal(const ScratchFolder& folder, const PlotOptions& options) {
   try {
     read_plot_data(folder / "map.h5", standard_parts(), options);
   } catch (const Error& error) {
@@ -110,11 +110,11 @@ TEST_CASE("of grids with draws at each point a map has the mean", "[cli][ensembl
 TEST_CASE("what a picture of an ensemble cannot show is refused in a line", "[cli][ensemble][plot]") {
   const ScratchFolder folder;
   map_of_planets(folder);
-  CHECK(has(refusal_of(folder, {.what = {"energy_wurst"}}), "did you mean 'energy_worst'?"));
-  CHECK(has(refusal_of(folder, {.what = {"elements_value.d"}}), "there is no 'd'; one of Sun, b, c is expected"));
-  CHECK(has(refusal_of(folder, {.what = {"energy_worst.b"}}), "energy_worst has 0 places after its name at most"));
-  CHECK(has(refusal_of(folder, {.frame = 1}), "leave out --frame"));
-  CHECK(has(refusal_of(folder, {.projection = "xy"}), "leave out --projection"));
+  CHECK(has(plot_refusal(folder, {.what = {"energy_wurst"}}), "did you mean 'energy_worst'?"));
+  CHECK(has(plot_refusal(folder, {.what = {"elements_value.d"}}), "there is no 'd'; one of Sun, b, c is expected"));
+  CHECK(has(plot_refusal(folder, {.what = {"energy_worst.b"}}), "energy_worst has 0 places after its name at most"));
+  CHECK(has(plot_refusal(folder, {.frame = 1}), "leave out --frame"));
+  CHECK(has(plot_refusal(folder, {.projection = "xy"}), "leave out --projection"));
 }
 
 }  // namespace
