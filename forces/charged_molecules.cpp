@@ -7,6 +7,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace noether::detail {
 
@@ -113,15 +114,14 @@ double ChargedMolecules::measure(const ParticleSystem<double>& s) {
   return std::sqrt(std::bit_cast<double>(longest.load()));
 }
 
-/// Of each record of a middle those of all sites; of nobody's too.
-void ChargedMolecules::lay_out() {
+const double* ChargedMolecules::records() {
   const NeighborList& list = middles_.list();
   const std::vector<std::int32_t>& molecules = list.particles_of_records();
   const auto count = static_cast<Index>(molecules.size());
   const double* const from = list.records();
   records_.resize(4 * sites * (molecules.size() + 1));
   double* const to = records_.data();
-  for_blocks(count + 1, [&](Index begin, Index end) {
+  for_blocks(count + 1, [&](Index begin, Index end) {  // of nobody's too
     for (Index r = begin; r < end; ++r) {
       for (Index k = 0; k < 4; ++k) {
         const double middle = k < 3 ? from[4 * r + k] : 0;
@@ -134,6 +134,67 @@ void ChargedMolecules::lay_out() {
       }
     }
   });
+  return to;
+}
+
+double ChargedMolecules::whole_spacing(const Box& box) {
+  return std::ldexp(1.0, std::ilogb(box.edges().maxCoeff()) - 28);
+}
+
+/// Each particle in the box is rounded to a whole number; where it stands outside of it differs from there by rounded
+/// edges. So places depend on no list. The furthest image of a list is 2.7 edges from the middle of the box, and
+/// nobody's record at least 4.
+const std::int32_t* ChargedMolecules::whole_records(const ParticleSystem<double>& s) {
+  constexpr auto size = static_cast<Index>(4 * sites);
+  const Box& box = s.box();
+  const double per_length = 1 / whole_spacing(box);
+  const auto whole = [=](double x) { return static_cast<std::int32_t>(std::lrint(x * per_length)); };
+  Vec3<double> middle, edges = box.edges();
+  std::array<std::uint32_t, 3> edge{};
+  for (int k = 0; k < 3; ++k) {
+    middle[k] = box.on_grid(k, std::floor(edges[k] / box.spacing(k) / 2) * box.spacing(k));
+    edge[at(k)] = static_cast<std::uint32_t>(whole(edges[k]));
+  }
+  whole_sites_.resize(at(size) * particles_[0].size());
+  for_blocks(static_cast<Index>(particles_[0].size()), [&](Index begin, Index end) {
+    for (Index k = 0; k < 3; ++k) {
+      const double* const x = s.positions().component(static_cast<int>(k));
+      const double half = edges[k] / 2;
+      for (Index m = begin; m < end; ++m) {
+        const double own = x[particles_[0][at(m)]];
+        for (std::size_t site = 0; site < sites; ++site) {
+          const double there = x[particles_[site][at(m)]], d = there - own;
+          const auto place = static_cast<std::uint32_t>(whole(there - middle[k]));
+          whole_sites_[at(size * m + k) + 4 * site] = static_cast<std::int32_t>(d > half    ? place - edge[at(k)]
+                                                                                : d < -half ? place + edge[at(k)]
+                                                                                            : place);
+        }
+      }
+    }
+  });
+  const NeighborList& list = middles_.list();
+  const std::vector<std::int32_t>& molecules = list.particles_of_records();
+  const double* const from = list.records();
+  whole_records_.resize(at(size) * (molecules.size() + 1));
+  std::int32_t* const to = whole_records_.data();
+  const auto count = static_cast<Index>(molecules.size());
+  for_blocks(count, [&](Index begin, Index end) {
+    for (Index r = begin; r < end; ++r) {
+      const std::int32_t m = molecules[at(r)];
+      for (Index k = 0; k < 3; ++k) {
+        const double in_box = s.positions().component(static_cast<int>(k))[particles_[0][at(m)]] - middle[k];
+        const auto crossed = static_cast<std::int32_t>(std::lrint((from[4 * r + k] - in_box) / edges[k]));
+        const std::uint32_t shift = static_cast<std::uint32_t>(crossed) * edge[at(k)];
+        for (Index site = 0; site < static_cast<Index>(sites); ++site) {
+          const Index place = k + 4 * site;
+          to[size * r + place] =
+              static_cast<std::int32_t>(static_cast<std::uint32_t>(whole_sites_[at(size * m + place)]) + shift);
+        }
+      }
+    }
+  });
+  std::fill_n(to + size * count, size, std::numeric_limits<std::int32_t>::min());
+  return to;
 }
 
 bool ChargedMolecules::update(const ParticleSystem<double>& s, double range, NeighborList* shared) {
@@ -143,8 +204,10 @@ bool ChargedMolecules::update(const ParticleSystem<double>& s, double range, Nei
     particles_ = {};
     return false;
   }
-  const double needed = range + 2 * measure(s);
   const Vec3<double> edges = s.box().edges();
+  // Rounding to whole numbers, and distances in single precision, bring pairs nearer by less than that.
+  const double rounding = 8 * whole_spacing(s.box()) + 0x1p-20 * range;
+  const double needed = range + rounding + 2 * measure(s);
   for (int k = 0; k < 3; ++k) {
     // Nobody meets an image of itself, and the list need not round to a coarser grid than that of the box.
     const bool exact = std::ldexp(s.box().spacing(k), 53) > edges[k] / 2 + 1.5 * needed;
@@ -152,7 +215,6 @@ bool ChargedMolecules::update(const ParticleSystem<double>& s, double range, Nei
   }
   if (!(needed <= range_)) range_ = needed * (range_ == 0 ? first_margin : later_margin);
   middles_.update(s, range_, shared);
-  lay_out();
   return true;
 }
 

@@ -19,25 +19,29 @@ namespace noether::detail {
 /// evaluation, so that nothing need be rigid. Middles are fewer and slower than all particles, and three sites of a
 /// neighbor are looked up at once. All positions are differences on the grid of the box, so forces have the bits of
 /// pairs that are found one by one.
-/// @cost O(n); 96 bytes for each molecule and image
+/// @cost O(n); 96 bytes for each molecule and image, in mixed precision 48
 class ChargedMolecules {
  public:
   static constexpr std::size_t sites = 3;
 
-  /// Brings the list and the records up to date. False where charges are not in such molecules, or the box is so small
-  /// that a molecule would meet itself.
+  /// Brings the list up to date. False where charges are not in such molecules, or the box is so small that a molecule
+  /// would meet itself.
   bool update(const ParticleSystem<double>& s, double range, NeighborList* shared);
 
   ListedPairs pairs() const;
   /// Of the sites of each record of the list, shape (records, 3, 4): x, y, z [length], and a number that means nothing.
-  const double* records() const { return records_.data(); }
+  /// Laid out anew.
+  const double* records();
+  /// The same in whole numbers of a spacing, whose differences are right modulo 2^32.
+  const std::int32_t* whole_records(const ParticleSystem<double>& s);
+  /// A power of two, of the box alone [length].
+  static double whole_spacing(const Box& box);
   double charge(std::size_t site) const { return charges_[site]; }
 
  private:
   bool find(const ParticleSystem<double>& s);
   bool are_known(const ParticleSystem<double>& s) const;
   double measure(const ParticleSystem<double>& s);
-  void lay_out();
 
   std::array<std::vector<std::int32_t>, sites> particles_;  ///< of each molecule, the middle first
   std::array<double, sites> charges_{};
@@ -47,6 +51,7 @@ class ChargedMolecules {
   double range_ = 0;                                                     ///< of the list [length]
   std::array<std::array<AlignedVector<double>, 3>, sites - 1> offsets_;  ///< of the others from the middle, by axis
   AlignedVector<double> records_;
+  AlignedVector<std::int32_t> whole_sites_, whole_records_;  ///< by molecule, and by record
 };
 
 }  // namespace noether::detail

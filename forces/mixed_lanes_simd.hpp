@@ -34,41 +34,42 @@ struct Points {
 
 #if HWY_TARGET == HWY_SCALAR
 
-HWY_INLINE Points load_points(const std::int32_t* records, const std::int32_t* offsets) {
-  const std::int32_t* one = records + offsets[0];
+/// @param record  of a lane
+template <class Record> HWY_INLINE Points load_points(const Record& record) {
+  const std::int32_t* one = record(0);
   return {hn::Set(Whole(), one[0]), hn::Set(Whole(), one[1]), hn::Set(Whole(), one[2]), hn::Set(Whole(), one[3])};
 }
 
 #else
 
 /// Records first, first + 4, ... side by side.
-template <class D> HWY_INLINE hn::Vec<D> every_fourth(D d, const std::int32_t* records, const std::int32_t* offsets) {
+template <class D, class Record> HWY_INLINE hn::Vec<D> every_fourth(D d, const Record& record, int first) {
 #if HWY_TARGET <= HWY_AVX3
-  const auto record = [&](int k) {
-    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(records + static_cast<std::ptrdiff_t>(offsets[k])));
-  };
+  const auto load = [&](int k)
+                        HWY_ATTR { return _mm_loadu_si128(reinterpret_cast<const __m128i*>(record(first + k))); };
   if constexpr (hn::MaxLanes(D()) == 16) {  // inserting would take the ports of the turning below
-    __m512i all = _mm512_castsi128_si512(record(0));
-    all = _mm512_mask_broadcast_i32x4(all, 0x00f0, record(4));
-    all = _mm512_mask_broadcast_i32x4(all, 0x0f00, record(8));
-    return hn::Vec<D>{_mm512_mask_broadcast_i32x4(all, 0xf000, record(12))};
+    __m512i all = _mm512_castsi128_si512(load(0));
+    all = _mm512_mask_broadcast_i32x4(all, 0x00f0, load(4));
+    all = _mm512_mask_broadcast_i32x4(all, 0x0f00, load(8));
+    return hn::Vec<D>{_mm512_mask_broadcast_i32x4(all, 0xf000, load(12))};
   }
 #endif
   if constexpr (hn::MaxLanes(D()) > 4) {
     const hn::Half<D> half;
-    return hn::Combine(d, every_fourth(half, records, offsets + hn::MaxLanes(half)),
-                       every_fourth(half, records, offsets));
+    return hn::Combine(d, every_fourth(half, record, first + static_cast<int>(hn::MaxLanes(half))),
+                       every_fourth(half, record, first));
   } else {
-    return hn::LoadU(d, records + static_cast<std::ptrdiff_t>(offsets[0]));
+    return hn::LoadU(d, record(first));
   }
 }
 
-/// Records are loaded whole, 16 bytes each, and turned.
-HWY_INLINE Points load_points(const std::int32_t* records, const std::int32_t* offsets) {
+/// Records are loaded whole, 16 bytes each, and turned. What nobody asks for is not made.
+/// @param record  of a lane
+template <class Record> HWY_INLINE Points load_points(const Record& record) {
   const Whole i;
   const hn::Repartition<std::int64_t, Whole> pairs;
-  const auto a = every_fourth(i, records, offsets), b = every_fourth(i, records, offsets + 1),
-             c = every_fourth(i, records, offsets + 2), e = every_fourth(i, records, offsets + 3);
+  const auto a = every_fourth(i, record, 0), b = every_fourth(i, record, 1), c = every_fourth(i, record, 2),
+             e = every_fourth(i, record, 3);
   const auto xy_low = hn::BitCast(pairs, hn::InterleaveLower(i, a, b)),
              xy_high = hn::BitCast(pairs, hn::InterleaveLower(i, c, e)),
              z_low = hn::BitCast(pairs, hn::InterleaveUpper(i, a, b)),
@@ -80,6 +81,10 @@ HWY_INLINE Points load_points(const std::int32_t* records, const std::int32_t* o
 }
 
 #endif
+
+HWY_INLINE Points load_points(const std::int32_t* records, const std::int32_t* offsets) {
+  return load_points([&](int k) HWY_ATTR { return records + static_cast<std::ptrdiff_t>(offsets[k]); });
+}
 
 /// From the particles in the lanes to their neighbors.
 struct Distances {

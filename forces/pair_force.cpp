@@ -201,18 +201,44 @@ void add_charges_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& 
   const std::size_t all = sums ? 1 : 0;
   const std::size_t kind = !is_of_r2(series) ? 2 : series.switch_inverse != 0 ? 1 : 0;
   const ChargedPairKernels& kernels = charged_pair_kernels();
+  const ChargedPairMixedKernels& mixed_kernels = charged_pair_mixed_kernels();
+  const double by = std::sqrt(s.units().coulomb_constant);
+  // In mixed precision: what charges are multiplied by, and distances [whole numbers] nearer than which a pair's force
+  // is more units than some.
+  const double mixed_unit = std::ldexp(force_unit, bits_of_mixed_unit);
+  const auto mixed_by = [&](double spacing) {
+    return std::sqrt(s.units().coulomb_constant / (spacing * spacing * mixed_unit));
+  };
+  const auto mixed_close2 = [&](double spacing, double most) {
+    return strongest / (most * mixed_unit * spacing * spacing);
+  };
   if (auto& molecules = out.workspace().get<ChargedMolecules>();
-      !mixed && plan.types[0] < 0 && molecules.update(s, plan.cutoff, out.neighbors())) {
+      plan.types[0] < 0 && molecules.update(s, plan.cutoff, out.neighbors())) {
     const auto quick = kernels.quick_molecules[kind][all], careful = kernels.careful_molecules[kind][all];
-    ChargedMoleculeField field{molecules.records(), {}, &series, close2, force_unit, energy_unit};
-    const double by = std::sqrt(s.units().coulomb_constant);
+    ChargedMoleculeField field{
+        !mixed || sums ? molecules.records() : nullptr, {}, &series, close2, force_unit, energy_unit};
     for (std::size_t i = 0; i < ChargedMolecules::sites; ++i) {
       for (std::size_t j = 0; j < ChargedMolecules::sites; ++j)
         field.products[i][j] = (by * molecules.charge(i)) * (by * molecules.charge(j));
     }
-    return add_pair_groups(
-        out, s, molecules.pairs(), {force_unit, energy_unit}, limits,
-        [&](const PairGroup& group, PairSums& found, bool care) { (care ? careful : quick)(field, group, &found); });
+    const auto sum_doubles = [&](const PairGroup& group, PairSums& found, bool care) {
+      (care ? careful : quick)(field, group, &found);
+    };
+    if (!mixed) return add_pair_groups(out, s, molecules.pairs(), {force_unit, energy_unit}, limits, sum_doubles);
+    const double spacing = ChargedMolecules::whole_spacing(s.box());
+    const ChargeSeries scaled = in_unit(series, spacing);
+    MixedMoleculeField whole{
+        molecules.whole_records(s), {}, &scaled, mixed_close2(spacing, ChargedPairMixedKernels::most_of_molecules)};
+    for (std::size_t i = 0; i < ChargedMolecules::sites; ++i)
+      whole.charges[i] = static_cast<float>(mixed_by(spacing) * molecules.charge(i));
+    const auto mixed_quick = mixed_kernels.quick_molecules[kind], mixed_careful = mixed_kernels.careful_molecules[kind];
+    return add_pair_groups(out, s, molecules.pairs(), {mixed_unit, energy_unit}, limits,
+                           [&](const PairGroup& group, PairSums& found, bool care) {
+                             if (sums) sum_doubles(group, found, care);  // for energies and virials
+                             const bool close = sums && found.close;
+                             (care ? mixed_careful : mixed_quick)(whole, group, &found);
+                             found.close = found.close || close;
+                           });
   }
   std::optional<NeighborList> own;
   NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(plan.cutoff);
@@ -226,13 +252,10 @@ void add_charges_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& 
     (care ? careful : quick)(field, group, found);
   };
   if (!mixed) return add_pair_groups(out, s, {list, selection}, {force_unit, energy_unit}, limits, sum_doubles);
-  const double spacing = list.whole_spacing(), unit = std::ldexp(1.0, std::ilogb(plan.cutoff));
-  const double mixed_unit = std::ldexp(force_unit, bits_of_mixed_unit);
-  const ChargeSeries scaled = in_unit(series, unit);
-  const double by = std::sqrt(s.units().coulomb_constant * spacing / (unit * unit * unit * mixed_unit));
-  const MixedChargedField whole{whole_records_with_charges(s, list, by), &scaled, spacing * spacing / (unit * unit),
-                                strongest / (0x1.8p27 * mixed_unit * unit * unit)};
-  const ChargedPairMixedKernels& mixed_kernels = charged_pair_mixed_kernels();
+  const double spacing = list.whole_spacing();
+  const ChargeSeries scaled = in_unit(series, spacing);
+  const MixedChargedField whole{whole_records_with_charges(s, list, mixed_by(spacing)), &scaled,
+                                mixed_close2(spacing, ChargedPairMixedKernels::most)};
   const auto mixed_quick = mixed_kernels.quick[kind], mixed_careful = mixed_kernels.careful[kind];
   add_pair_groups(out, s, {list, selection}, {mixed_unit, energy_unit}, limits,
                   [&](const PairGroup& group, PairSums& found, bool care) {

@@ -1,4 +1,5 @@
-/// Charges of molecules of three: forces found by molecules have the bits of those found pair by pair.
+/// Charges of molecules of three: forces found by molecules have the bits of those found pair by pair, in mixed
+/// precision too.
 
 #include "forces/charged_molecules.hpp"
 
@@ -86,13 +87,18 @@ template <class F> void check_bits(const F& force, ParticleSystem<double> s, int
   CHECK_FALSE(by_molecules(other));
 }
 
-const ReactionFieldForce cavity{{.radius = 1.5}};
+const ReactionFieldForce cavity{{.radius = 1.5}}, switched{{.radius = 1.5, .switched_from = 1.2}};
+const PairForce<detail::ScreenedCharges> near{{2.0, 1.5}};
+
+template <class F> F in_mixed(F force) {
+  force.precision = PairPrecision::mixed;
+  return force;
+}
 
 }  // namespace
 
 TEST_CASE("charges found by molecules have the bits of those found pair by pair, while molecules move and stretch",
           "[charged_molecules][determinism]") {
-  const ReactionFieldForce switched{{.radius = 1.5, .switched_from = 1.2}};
   const Ewald sum{.cutoff = 1.5, .alpha = 2.0, .kmax = 2};
   for (const SimdLevel level : test::all_levels()) {
     const test::AtLevel at(level);
@@ -100,7 +106,52 @@ TEST_CASE("charges found by molecules have the bits of those found pair by pair,
     check_bits(cavity, molecules(3, 0.1), 12);
     check_bits(switched, molecules(3, 0.1), 3);
     check_bits(sum, molecules(3, 0.1), 3);
+    // Both count whole numbers of 2^-26 here: those of the list of all go by the range too, those of molecules do not.
+    check_bits(in_mixed(cavity), molecules(3, 0.1), 12);
+    check_bits(in_mixed(switched), molecules(3, 0.1), 3);
+    check_bits(in_mixed(near), molecules(3, 0.1), 3);
   }
+}
+
+TEST_CASE(
+    "charges found by molecules in mixed precision have the forces of 113 bits to single precision, and energies "
+    "of doubles",
+    "[charged_molecules][mixed]") {
+  const auto check = [](const auto& force, const ParticleSystem<double>& s) {
+    Workspace kept;
+    kept.put(NeighborList(1.5));
+    const test::Evaluated mixed = test::evaluated<double>(in_mixed(force), s, &kept),
+                          doubles = test::evaluated<double>(force, s), exact = test::evaluated<Quad>(force, s);
+    REQUIRE_FALSE(mixed.failure);
+    CHECK(by_molecules(kept));
+    CHECK(mixed.energy == doubles.energy);
+    CHECK(mixed.virial == doubles.virial);
+    // Each of some 200 pairs is rounded to a unit, and has single precision of the strongest. Their sum has no sign.
+    const double strongest = exact.a.all().cwiseAbs().maxCoeff();
+    const double unit = std::ldexp(1.0, std::ilogb(100 * 0.64 / (1.5 * 1.5)) + 1 - 26);
+    const double error = std::sqrt((mixed.a.all() - exact.a.all()).squaredNorm() / static_cast<double>(s.size()));
+    CHECK(test::largest_difference(mixed.a, exact.a) < 30 * unit + 0x1p-21 * strongest);
+    CHECK(error < 10 * unit + 0x1p-23 * strongest);
+    CHECK(error > 1e-9 * strongest);  // it is not in doubles
+  };
+  for (const SimdLevel level : test::all_levels()) {
+    const test::AtLevel at(level);
+    CAPTURE(name(level));
+    check(cavity, molecules(3, 0.1));
+    check(switched, molecules(3, 0.1));
+    check(near, molecules(3, 0.1));
+  }
+}
+
+TEST_CASE("in mixed precision whatever finds molecules gives the same bits, and their forces add up to nothing",
+          "[charged_molecules][mixed][determinism]") {
+  const ParticleSystem<double> s = molecules(4, 0.1);
+  test::check_bits_of_lists(in_mixed(cavity), s, 1.5);
+  test::check_old_lists(in_mixed(cavity), molecules(3, 0.1), 1.5);
+  const double unit = std::ldexp(1.0, std::ilogb(100 * 0.64 / (1.5 * 1.5)) + 1 - 26);  // of charges of 0.8
+  VectorColumn<double> forces = test::evaluated<double>(in_mixed(cavity), s).a;
+  for (Index i = 0; i < s.size(); ++i) forces.set(i, s.masses()[i] * std::as_const(forces)[i]);
+  test::check_sum_is_zero(forces, unit);
 }
 
 TEST_CASE("sites on top of each other are summed with care by molecules too", "[charged_molecules][determinism]") {
@@ -115,14 +166,17 @@ TEST_CASE("sites on top of each other are summed with care by molecules too", "[
   for (const SimdLevel level : test::all_levels()) {
     const test::AtLevel at(level);
     check_bits(cavity, s, 1);
+    check_bits(in_mixed(cavity), s, 1);
   }
   // And a pair too strong for any sum names its particles in the system.
   put_on(Vec3<double>::Zero());
-  const test::Evaluated found = test::evaluated<double>(cavity, s),
-                        expected = test::evaluated<double>(cavity, one_by_one(s));
-  REQUIRE(found.failure);
-  REQUIRE(expected.failure);
-  CHECK(found.failure->message == expected.failure->message);
+  for (const ReactionFieldForce& force : {cavity, in_mixed(cavity)}) {
+    const test::Evaluated found = test::evaluated<double>(force, s),
+                          expected = test::evaluated<double>(force, one_by_one(s));
+    REQUIRE(found.failure);
+    REQUIRE(expected.failure);
+    CHECK(found.failure->message == expected.failure->message);
+  }
 }
 
 TEST_CASE("charges found by molecules are those of 113 bits, and depend on no list and no thread",
@@ -143,6 +197,10 @@ TEST_CASE("charges that are in no such molecules, or in a box that is too small 
     const test::Evaluated found = test::evaluated<double>(cavity, s, &kept), exact = test::evaluated<Quad>(cavity, s);
     REQUIRE_FALSE(found.failure);
     CHECK(test::largest_difference(found.a, exact.a) < 1e-11);
+    CHECK_FALSE(by_molecules(kept));
+    if (!s.box().is_periodic()) return;
+    const test::Evaluated mixed = test::evaluated<double>(in_mixed(cavity), s, &kept);
+    CHECK(test::largest_difference(mixed.a, exact.a) < 1e-6 * (100 + exact.a.all().cwiseAbs().maxCoeff()));
     CHECK_FALSE(by_molecules(kept));
   };
   ParticleSystem<double> other = molecules(3, 0.1);
