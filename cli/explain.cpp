@@ -17,6 +17,7 @@
 #include "scene/warnings.hpp"
 #include "study/ensemble_lanes.hpp"
 #include "study/kepler_steps.hpp"
+#include "study/sheet_steps.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -50,6 +51,7 @@ struct Explanation {
   int corrector = 0;                            ///< flows before the run, and for every look at it
   int evaluations = 0;                          ///< of the forces in one step: kicks between which something has moved
   std::optional<KeplerSteps> kepler;            ///< of gravity
+  std::optional<SheetSteps> sheet;              ///< of a turning frame
   Index variables = 0;                          ///< of a system without particles
   std::optional<NeighborStatistics> neighbors;  ///< of the first step
   std::string kept;                             ///< of energy, momentum and angular momentum
@@ -301,7 +303,9 @@ Explanation explained(const Scene& scene) {
   measure_stiffness(scene, e);
   if (!scene.integrator.classical) explain_scheme(scene, e);
   count_evaluations(scene, e);
-  e.kepler = kepler_steps(scene);
+  const auto sheet = sheet_steps(scene);
+  if (!sheet) e.kepler = kepler_steps(scene);  // in a turning frame orbits are no ellipses
+  if (!scene.integrator.classical) e.sheet = sheet;
   e.small_box = small_box_of(scene);
   e.kept = kept_text(scene, integrator.claims());
   e.shadow = shadow_text(scene, integrator);
@@ -399,6 +403,10 @@ void print_step(const Scene& scene, const Explanation& e) {
   if (e.kepler) {
     fmt::print("; at most {:.3g}{} is recommended, a twentieth of the time {} needs around its pericenter",
                e.kepler->recommended(), unit, e.kepler->passage_of);
+  }
+  if (e.sheet) {
+    const auto step = e.sheet->recommended();
+    fmt::print("; {}{}", step ? fmt::format("at most {:.3g}{} is recommended, ", *step, unit) : "", e.sheet->reason());
   }
   if (const auto& steps = scene.integrator.steps) fmt::print("; {} in all", counted(*steps, "step"));
   fmt::print("\n");
@@ -512,6 +520,12 @@ Json stiffness_json(const Explanation& e) {
   return Json::object(members);
 }
 
+Json recommended_step(const Explanation& e) {
+  if (e.kepler) return e.kepler->recommended();
+  const auto of_sheet = e.sheet ? e.sheet->recommended() : std::nullopt;
+  return of_sheet ? Json(*of_sheet) : Json();
+}
+
 Json json_of(const Scene& scene, const Explanation& e) {
   const std::string epoch = epoch_of(scene.effective);
   Json::Members flows;
@@ -544,7 +558,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
        {"step", scene.integrator.step},
        {"members_alone", alone.empty() ? Json() : Json(alone)},
        {"epoch", epoch.empty() ? Json() : Json(epoch)},
-       {"recommended_step", e.kepler ? Json(e.kepler->recommended()) : Json()},
+       {"recommended_step", recommended_step(e)},
        {"time_unit", scene.units->time}});
 }
 
