@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace noether::io {
 
@@ -22,6 +23,8 @@ struct BodiesOptions {
   ElementsAbout elements = ElementsAbout::first_body;
   std::optional<double> epoch = {};  ///< Julian day of the start: the records to take of Horizons (default: the first);
                                      ///< beside it stand times of the pericenter in Julian days
+  std::vector<ColumnInfo> columns = {};   ///< of particles, that a CSV table may give
+  std::vector<ColumnInfo> left_out = {};  ///< that it may have, but nobody uses
 };
 
 /// The moment for which the states of a table hold.
@@ -43,9 +46,10 @@ constexpr bool is_modified_beside(double days) { return days > 2e6 || days < -2e
 /// Bodies, and what a table says of them.
 struct BodyTable {
   ParticleSystem<double> particles;
-  std::optional<BodyEpoch> epoch = {};  ///< of Horizons, or as it was given
-  bool without_sun = false;             ///< states about the Solar System Barycenter, and no Sun among them
-  std::string light_center = {};        ///< a warning: orbits about the first body, and a heavier one above
+  std::optional<BodyEpoch> epoch = {};     ///< of Horizons, or as it was given
+  bool without_sun = false;                ///< states about the Solar System Barycenter, and no Sun among them
+  std::vector<std::string> left_out = {};  ///< columns that it has, and nobody uses
+  std::string light_center = {};           ///< a warning: orbits about the first body, and a heavier one above
 };
 
 }  // namespace noether::io

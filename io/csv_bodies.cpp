@@ -1,6 +1,7 @@
 // Bodies from CSV: columns by name, units in brackets, positions and velocities or elements.
 #include "engine/given_orbit.hpp"
 #include "io/body_readers.hpp"
+#include "io/csv_columns.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
@@ -20,35 +21,6 @@
 namespace noether::io {
 
 namespace {
-
-/// What a table may hold; `dimension` in words, "" for what is no number. A unit serves all columns of a group.
-struct KnownColumn {
-  enum class Group { none, position, velocity, angle };
-  std::string_view name, dimension;
-  Group group = Group::none;
-};
-
-/// All columns, in the order in which messages list them.
-const std::vector<KnownColumn>& known_columns() {
-  using Group = KnownColumn::Group;
-  static const std::vector<KnownColumn> all = [] {
-    std::vector<KnownColumn> columns = {{"name", ""},
-                                        {"id", ""},
-                                        {"mass", "mass"},
-                                        {"x", "length", Group::position},
-                                        {"y", "length", Group::position},
-                                        {"z", "length", Group::position},
-                                        {"vx", "velocity", Group::velocity},
-                                        {"vy", "velocity", Group::velocity},
-                                        {"vz", "velocity", Group::velocity},
-                                        {"about", ""}};
-    for (const OrbitKey& key : orbit_keys) {
-      columns.push_back({key.name, key.dimension, key.dimension == "angle" ? Group::angle : Group::none});
-    }
-    return columns;
-  }();
-  return all;
-}
 
 constexpr std::array<std::string_view, 6> cartesian = {"x", "y", "z", "vx", "vy", "vz"};
 
@@ -165,6 +137,8 @@ class CsvBodies {
         G_(options.G.value_or(options.units->G)),
         elements_about_(options.elements),
         epoch_(options.epoch),
+        options_(options),
+        known_columns_(known_columns(options)),
         bodies_(text, units_) {}
 
   BodyTable read() {
@@ -182,7 +156,12 @@ class CsvBodies {
     if (bodies_.particles().size() == 0) text_.fail(heading_line_, "the table has column names, but no bodies");
     ParticleSystem<double> particles = bodies_.take();
     if (!ids_.empty()) particles.restore_ids(ids_);
-    BodyTable table{.particles = std::move(particles), .light_center = std::move(light_center_)};
+    for (const auto& [info, rows] : of_parts_) {
+      particles.add_column(info);
+      for (std::size_t i = 0; i < rows.size(); ++i) particles.set_row(info.name, static_cast<Index>(i), rows[i]);
+    }
+    BodyTable table{
+        .particles = std::move(particles), .left_out = std::move(left_out_), .light_center = std::move(light_center_)};
     if (epoch_) table.epoch = BodyEpoch{.julian_day = *epoch_, .scale = ""};
     return table;
   }
@@ -213,7 +192,7 @@ class CsvBodies {
     field_count_ = static_cast<std::size_t>(fields.rend() - last);
     std::vector<std::pair<const KnownColumn*, Heading>> headings;
     for (std::size_t k = 0; k < field_count_; ++k) {
-      const Heading heading = parse_heading(fields[k]);
+      const Heading heading = heading_of(fields[k], known_columns_);
       const KnownColumn& known = known_column(line, k, heading.name);
       const bool is_new = columns_.try_emplace(heading.name, Column{k}).second;
       if (!is_new) text_.fail(line, fmt::format("column '{}' appears twice", heading.name), heading.name);
@@ -227,7 +206,7 @@ class CsvBodies {
       if (known->dimension.empty()) continue;
       std::set<std::string> beside;  // units of the columns of its group
       for (const auto& [other, its] : headings) {
-        const bool same = other->group == known->group && known->group != KnownColumn::Group::none;
+        const bool same = other->group == known->group && !known->group.empty();
         const bool plain = units_.is_reduced() && (its.unit == "1" || its.unit == "rad");
         if (same && its.unit && !plain) beside.insert(*its.unit);
       }
@@ -238,13 +217,34 @@ class CsvBodies {
                        column.unit->times(1) == unit_value("day", units_);
     }
     check_columns(line);
+    find_columns_of_parts(line);
+  }
+
+  /// Which columns of parts the table has: all numbers of each, or none.
+  void find_columns_of_parts(std::size_t line) {
+    for (const auto* list : {&options_.columns, &options_.left_out}) {
+      for (const ColumnInfo& info : *list) {
+        const std::vector<std::string> names = names_of(info);
+        std::vector<std::string> missing;
+        for (const std::string& name : names) {
+          if (!has(name)) missing.push_back(name);
+        }
+        if (missing.size() == names.size()) continue;
+        if (!missing.empty()) {
+          text_.fail(line, fmt::format("there is no column {}; expected all of {}", fmt::join(missing, ", "),
+                                       fmt::join(names, ", ")));
+        }
+        if (list == &options_.columns) of_parts_.emplace_back(info, std::vector<std::vector<double>>());
+        if (list == &options_.left_out) left_out_.push_back(info.name);
+      }
+    }
   }
 
   const KnownColumn& known_column(std::size_t line, std::size_t field, const std::string& name) const {
     std::vector<std::string> names;
-    for (const KnownColumn& known : known_columns()) {
+    for (const KnownColumn& known : known_columns_) {
       if (known.name == name) return known;
-      names.emplace_back(known.name);
+      names.push_back(known.name);
     }
     if (name.empty()) {
       text_.fail(line, fmt::format(
@@ -261,6 +261,15 @@ class CsvBodies {
                  name);
     }
     refuse_names_in_comment(line);
+    for (const auto* list : {&options_.columns, &options_.left_out}) {
+      for (const ColumnInfo& info : *list) {
+        if (info.name != name) continue;
+        text_.fail(line,
+                   fmt::format("column '{}' has {} numbers; give a column for each: {}", name, info.width,
+                               fmt::join(names_of(info), ", ")),
+                   name);
+      }
+    }
     const OtherName other = other_name_of(name);
     text_.fail(line,
                fmt::format("unknown column '{}'{}", name,
@@ -277,7 +286,7 @@ class CsvBodies {
           content.begin(), content.end(), [](char c) { return c == '#' || c == ',' || c == ';'; }, ' ');
       int known = 0;
       for (const std::string& word : words_of(content)) {
-        for (const KnownColumn& column : known_columns()) known += column.name == word ? 1 : 0;
+        for (const KnownColumn& column : known_columns_) known += column.name == word ? 1 : 0;
       }
       if (known < 3) continue;
       text_.fail(above, "the column names are in a comment; take out the '#' before them");
@@ -386,6 +395,14 @@ class CsvBodies {
     const double mass = number(line, fields, "mass");
     const auto [x, v] = state(line, fields, name, mass);
     bodies_.add(line, name, mass, x, v);
+    for (auto& [info, rows] : of_parts_) {
+      std::vector<double>& numbers = rows.emplace_back();
+      for (const std::string& part : names_of(info)) {
+        numbers.push_back(number(line, fields, part));
+        if (std::isfinite(numbers.back())) continue;
+        text_.fail(line, fmt::format("the {} of {} is not finite in these units", info.name, name));
+      }
+    }
     if (has("about")) index_.emplace(name, row);
     if (by_elements_) before_.add(mass, x, v);
   }
@@ -553,11 +570,16 @@ class CsvBodies {
   ElementsAbout elements_about_;
   std::string light_center_;  ///< what `BodyTable` tells
   std::optional<double> epoch_;
+  const BodiesOptions& options_;
+  std::vector<KnownColumn> known_columns_;
   BodyList bodies_;
   Separator separator_ = Separator::comma;
   std::size_t heading_line_ = 0, field_count_ = 0;
   std::map<std::string, Column> columns_;
   bool by_elements_ = false;
+  /// Columns of parts that the table has, and their rows.
+  std::vector<std::pair<ColumnInfo, std::vector<std::vector<double>>>> of_parts_;
+  std::vector<std::string> left_out_;
   OrbitCenter before_;                            ///< of all bodies above
   std::unordered_map<std::string, Index> index_;  ///< by name, where `about` asks for it
   std::vector<std::int64_t> ids_;

@@ -16,9 +16,13 @@ namespace noether {
 
 namespace {
 
-void check_rate(double Omega) {
-  if (Omega > 0 && std::isfinite(Omega)) return;
-  refuse_field("Omega", Omega, "is not a valid angular velocity of the frame; a number above 0 is expected");
+void check_rate(const std::optional<double>& Omega) {
+  if (!Omega) {
+    throw Error("the angular velocity of the frame is missing; give Omega, or use the Hamiltonian 'shearing_sheet'",
+                {.key = "Omega"});
+  }
+  if (*Omega > 0 && std::isfinite(*Omega)) return;
+  refuse_field("Omega", *Omega, "is not a valid angular velocity of the frame; a number above 0 is expected");
 }
 
 void check_box(const Box& box, const std::string& monitor, const std::string& why) {
@@ -52,12 +56,12 @@ template <class Real> void VelocityDispersion::observe(const Snapshot<Real>& now
   const ParticleSystem<Real>& s = now.state();
   const Real n(static_cast<double>(std::max<Index>(s.size(), 1)));
   const auto sums = sums_over<Real, 3>(s.size(), [&](Index i) {
-    const Vec3<Real> u = about_shear(s, i, Omega);
+    const Vec3<Real> u = about_shear(s, i, *Omega);
     return std::array{u[0], u[1], u[2]};
   });
   const Vec3<Real> mean(sums[0] / n, sums[1] / n, sums[2] / n);
   const auto squares = sums_over<Real, 3>(s.size(), [&](Index i) {
-    const Vec3<Real> u = about_shear(s, i, Omega) - mean;
+    const Vec3<Real> u = about_shear(s, i, *Omega) - mean;
     return std::array<Real, 3>{u[0] * u[0], u[1] * u[1], u[2] * u[2]};
   });
   for (std::size_t k = 0; k < 3; ++k) now_[k] = std::sqrt(static_cast<double>(Real(squares[k] / n)));
@@ -164,7 +168,7 @@ double pulled_outwards(const ParticleSystem<Real>& s, double Omega, double G, do
 template <class Real> void Viscosity::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const auto [mass, flux] = sums_over<Real, 2>(s.size(), [&](Index i) {
-    const Vec3<Real> u = about_shear(s, i, Omega);
+    const Vec3<Real> u = about_shear(s, i, *Omega);
     return std::array<Real, 2>{s.masses()[i], s.masses()[i] * u[0] * u[1]};
   });
   double carried = 0;
@@ -172,11 +176,11 @@ template <class Real> void Viscosity::observe(const Snapshot<Real>& now) {
     const auto& column = s.template column<ContactTransport>();
     carried = static_cast<double>(sum_over<Real>(s.size(), [&](Index i) { return column[i]; }));
   }
-  const double factor = 2 / (3 * Omega * static_cast<double>(mass)), elapsed = now.time() - last_time_;
+  const double factor = 2 / (3 * *Omega * static_cast<double>(mass)), elapsed = now.time() - last_time_;
   const bool first = !looked_ || !(elapsed > 0);
   now_[0] = factor * static_cast<double>(flux);
   now_[1] = first ? std::numeric_limits<double>::quiet_NaN() : factor * (carried - carried_) / elapsed;
-  now_[2] = G ? factor * pulled_outwards(s, Omega, *G, softening, now.time()) : 0;
+  now_[2] = G ? factor * pulled_outwards(s, *Omega, *G, softening, now.time()) : 0;
   looked_ = true;
   carried_ = carried;
   last_time_ = now.time();
@@ -253,7 +257,7 @@ std::vector<Wave> waves_of(const Vec3<double>& edges, double slide, double short
 template <class Real> void Wakes::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const Vec3<double>& edges = s.box().edges();
-  const double slide = std::fmod(1.5 * Omega * now.time() * edges[0], edges[1]);
+  const double slide = std::fmod(1.5 * *Omega * now.time() * edges[0], edges[1]);
   const auto [mass, squares] = sums_over<Real, 2>(s.size(), [&](Index i) {
     return std::array<Real, 2>{s.masses()[i], s.masses()[i] * s.masses()[i]};
   });

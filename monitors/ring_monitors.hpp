@@ -22,7 +22,7 @@ class VelocityDispersion {
  public:
   static constexpr bool needs_particles = true;
 
-  double Omega = 1;  ///< of the sheet [1/time]
+  std::optional<double> Omega = {};  ///< of the sheet [1/time]
 
   VelocityDispersion() = default;
   explicit VelocityDispersion(double rate) : Omega(rate) {}
@@ -32,12 +32,11 @@ class VelocityDispersion {
         "velocity_dispersion", "velocities of the particles of a sheet about its shear",
         formula("c_k^2 = <(u_k - <u_k>)^2>,  u = (v_x, v_y + 3 Omega x/2, v_z);  value^2 = c_x^2 + c_y^2 + c_z^2"),
         quantities("value, components[3] [length/time]"), source("WisdomTremaine1988"),
-        field<&VelocityDispersion::Omega>("Omega", "1/time", "angular velocity of the sheet")
-            .required("\"1.3143527e-4 1/s\""),
+        field<&VelocityDispersion::Omega>("Omega", "1/time", "angular velocity; default: that of the shearing sheet"),
         state<&VelocityDispersion::now_>("now"), state<&VelocityDispersion::values_>("values"),
         state<&VelocityDispersion::slope_unit_>("slope_unit"));
   }
-  /// @throws Error  for an Omega that is not above 0
+  /// @throws Error  without an Omega, or for one that is not above 0
   void check() const;
 
   template <class Real> void observe(const Snapshot<Real>& now);
@@ -105,9 +104,9 @@ class Viscosity {
  public:
   static constexpr bool needs_particles = true;
 
-  double Omega = 1;              ///< of the sheet [1/time]
-  std::optional<double> G = {};  ///< [length^3/mass/time^2]; none: no gravitational part
-  double softening = 0;          ///< of gravity [length]
+  std::optional<double> Omega = {};  ///< of the sheet [1/time]
+  std::optional<double> G = {};      ///< [length^3/mass/time^2]; none: no gravitational part
+  double softening = 0;              ///< of gravity [length]
 
   Viscosity() = default;
   explicit Viscosity(double rate, std::optional<double> constant = {}, double softened = 0)
@@ -120,14 +119,14 @@ class Viscosity {
                 "Omega x/2"),
         quantities("value, local, collisional, gravitational [length^2/time]"),
         source("WisdomTremaine1988, Daisaka2001"),
-        field<&Viscosity::Omega>("Omega", "1/time", "angular velocity of the sheet").required("\"1.3143527e-4 1/s\""),
+        field<&Viscosity::Omega>("Omega", "1/time", "angular velocity; default: that of the shearing sheet"),
         field<&Viscosity::G>("G", "length^3/mass/time^2", "of the scene's gravity; none: no gravitational part"),
         field<&Viscosity::softening>("softening", "length", "of the scene's gravity"), state<&Viscosity::now_>("now"),
         state<&Viscosity::looked_>("looked"), state<&Viscosity::carried_>("carried"),
         state<&Viscosity::last_time_>("last_time"), state<&Viscosity::values_>("values"),
         state<&Viscosity::parts_>("parts"), state<&Viscosity::slope_unit_>("slope_unit"));
   }
-  /// @throws Error  for an Omega or a G that is not above 0, or a negative softening
+  /// @throws Error  without an Omega, for an Omega or a G that is not above 0, or a negative softening
   void check() const;
   /// @throws Error  in open space, and without mass
   template <class Real> void check(const ParticleSystem<Real>& s) const;
@@ -169,8 +168,8 @@ class Wakes {
  public:
   static constexpr bool needs_particles = true;
 
-  double Omega = 1;     ///< of the sheet [1/time]
-  double shortest = 0;  ///< wave that counts [length]
+  std::optional<double> Omega = {};  ///< of the sheet [1/time]
+  double shortest = 0;               ///< wave that counts [length]
 
   Wakes() = default;
   Wakes(double rate, double length) : Omega(rate), shortest(length) {}
@@ -181,12 +180,12 @@ class Wakes {
         formula("P(k) = |sum m_j exp(- i k.x_j)|^2/M^2 - sum m_j^2/M^2;  contrast^2 = sum P;  tan(2 pitch) = sum P 2 "
                 "k_x k_y/k^2 / sum P (k_x^2 - k_y^2)/k^2"),
         quantities("contrast [1], pitch [angle]"), source("Salo1995"),
-        field<&Wakes::Omega>("Omega", "1/time", "angular velocity of the sheet").required("\"1.3143527e-4 1/s\""),
+        field<&Wakes::Omega>("Omega", "1/time", "angular velocity; default: that of the shearing sheet"),
         field<&Wakes::shortest>("shortest", "length", "shortest wave that counts").required("\"20 m\""),
         state<&Wakes::contrast_>("contrast"), state<&Wakes::pitch_>("pitch"), state<&Wakes::values_>("values"),
         state<&Wakes::pitches_>("pitches"), state<&Wakes::slope_unit_>("slope_unit"));
   }
-  /// @throws Error  for an Omega or a length that is not above 0
+  /// @throws Error  without an Omega, or for an Omega or a length that is not above 0
   void check() const;
   /// @throws Error  in open space, and for more than 100 000 waves
   template <class Real> void check(const ParticleSystem<Real>& s) const;

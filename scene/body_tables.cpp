@@ -117,11 +117,13 @@ std::optional<double> time_of_pericenter(TableReader& body, const std::optional<
 /// Types and charges of the bodies of `[[particles.body]]`.
 class TypedBodies {
  public:
-  /// @param before  bodies that are there already, without types and charges
-  TypedBodies(TableReader& reader, SceneValue& effective, Index before)
+  /// @param before  bodies that are there already, without types
+  TypedBodies(TableReader& reader, SceneValue& effective, const ParticleSystem<double>& before)
       : types_(read_types(reader, effective)),
         pairs_(read_pairs(reader, effective)),
-        charges_(static_cast<std::size_t>(before)) {
+        charges_(static_cast<std::size_t>(before.size())) {
+    for (std::size_t i = 0; before.has<Charge>() && i < charges_.size(); ++i)
+      charges_[i] = before.column<Charge>()[static_cast<Index>(i)];
     const auto mixing = read_mixing(reader, effective);
     if (types_.empty() && (mixing || !pairs_.empty())) {
       const char* key = mixing ? "mixing" : "pair";
@@ -213,7 +215,7 @@ class BodyTables {
         warnings_(warnings),
         s_(std::move(s)),
         bodies_(s_.bodies() != nullptr ? *s_.bodies() : Bodies{}),
-        typed_(reader, effective, s_.size()) {
+        typed_(reader, effective, s_) {
     for (const ColumnInfo& column : reader.context().columns) s_.add_column(column);
     for (Index i = 0; i < s_.size(); ++i) note(i);
   }

@@ -119,14 +119,21 @@ template <class E> E read_choice(TableReader& reader, std::string_view key) {
   return choice_of<E>(reader, whole ? to_text(*given) : reader.text(key), key);
 }
 
+/// Whether a field is the angular velocity of a turning frame, which the Hamiltonian tells once.
+inline bool is_rate_of_frame(std::string_view key, std::string_view dimension) {
+  return key == "Omega" && dimension == "1/time";
+}
+
 /// Reads one field where the scene gives it.
 template <class V> void read_field(TableReader& reader, std::string_view key, std::string_view dimension, V& target) {
   using T = typename optional_value<V>::type;
   const SceneValue* value = reader.find(key);
   if (value == nullptr) {
-    // G of the Hamiltonian is the default of every field of that name.
+    // G and Omega of the Hamiltonian are the defaults of every field of that name.
     if constexpr (std::is_same_v<V, std::optional<double>>) {
       if (key == "G" && reader.context().G) target = reader.number(*reader.context().G, "G", dimension);
+      if (is_rate_of_frame(key, dimension) && reader.context().Omega)
+        target = reader.number(*reader.context().Omega, key, dimension);
     }
   } else if constexpr (std::is_same_v<T, bool>) {
     target = reader.flag(key, false);
@@ -136,6 +143,7 @@ template <class V> void read_field(TableReader& reader, std::string_view key, st
     target = *reader.quantity(key, dimension);
     if constexpr (std::is_same_v<V, std::optional<double>>) {
       if (key == "G") reader.expect_same_constant(*target);
+      if (is_rate_of_frame(key, dimension)) reader.expect_same_rate(*target);
     }
   } else if constexpr (std::is_enum_v<T>) {
     target = read_choice<T>(reader, key);
@@ -202,7 +210,7 @@ void put_field(TableReader& reader, std::string_view name, std::string_view dime
     effective.put(std::string(name), *written);
   } else if constexpr (std::is_same_v<V, typename optional_value<V>::type>) {
     effective.put(std::string(name), field_value(value, dimension, *reader.context().units));
-  } else if (value && name != "G") {
+  } else if (value && name != "G" && !is_rate_of_frame(name, dimension)) {
     effective.put(std::string(name), field_value(*value, dimension, *reader.context().units));
   }
 }

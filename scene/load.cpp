@@ -9,6 +9,7 @@
 #include "scene/gyration.hpp"
 #include "scene/key_paths.hpp"
 #include "scene/minimize.hpp"
+#include "scene/part_columns.hpp"
 #include "scene/read_constraints.hpp"
 #include "scene/read_force.hpp"
 #include "scene/read_integrator.hpp"
@@ -52,7 +53,9 @@ class SceneReader {
       read_system(top, *system);
     } else {
       read_constant(table(top, "hamiltonian"));
-      context_.columns = declared_columns(table(top, "hamiltonian"));
+      read_rate_of_frame(table(top, "hamiltonian"));
+      context_.columns = declared_columns(context_, parts_, table(top, "hamiltonian"));
+      context_.other_columns = columns_of_other_parts(parts_, context_.columns);
       SceneValue& particles = scene_.effective.put("particles", SceneValue::table());
       scene_.particles =
           read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles, scene_.warnings);
@@ -149,6 +152,20 @@ class SceneReader {
     context_.G = *G;
   }
 
+  /// Omega of a Hamiltonian in a turning frame, which builders and monitors want too. What is wrong with it is told
+  /// when the Hamiltonian is read.
+  void read_rate_of_frame(const SceneValue& hamiltonian) {
+    const SceneValue *type = hamiltonian.find("type"), *Omega = hamiltonian.find("Omega");
+    const std::string* name = type != nullptr ? type->get<std::string>() : nullptr;
+    if (name == nullptr || Omega == nullptr) return;
+    for (const auto& kind : parts_.hamiltonians()) {
+      if (kind.info.name != *name) continue;
+      for (const FieldInfo& field : kind.info.fields) {
+        if (detail::is_rate_of_frame(field.name, field.dimension)) context_.Omega = *Omega;
+      }
+    }
+  }
+
   /// G that stands in a force alone is that of the scene too: of orbits by elements, and of what watches them.
   void read_constant_of_force(const SceneValue& hamiltonian) {
     const SceneValue* forces = hamiltonian.find("force");
@@ -162,39 +179,6 @@ class SceneReader {
       scene_.hamiltonian.G = value;
       context_.G = *G;
     }
-  }
-
-  /// The columns that the Hamiltonian and the forces of a scene declare. What is wrong with these is told later, when
-  /// they are read.
-  std::vector<ColumnInfo> declared_columns(const SceneValue& hamiltonian) const {
-    std::vector<ColumnInfo> all;
-    const auto take = [&](const SceneValue& table, const auto& kinds) {
-      const SceneValue* type = table.find("type");
-      const std::string* name = type != nullptr ? type->get<std::string>() : nullptr;
-      for (const auto& kind : kinds) {
-        if (name == nullptr || kind.info.name != *name) continue;
-        for (const ColumnInfo& column : kind.columns) {
-          const auto same_name = [&](const ColumnInfo& other) { return other.name == column.name; };
-          const auto other = std::find_if(all.begin(), all.end(), same_name);
-          if (other == all.end()) {
-            all.push_back(column);
-            continue;
-          }
-          try {
-            expect_same_meaning(*other, column);
-          } catch (const Error& error) {
-            TableReader(context_, table, *name, "hamiltonian").fail("type", error.message());
-          }
-        }
-      }
-    };
-    take(hamiltonian, parts_.hamiltonians());
-    for (const char* key : {"force", "field"}) {
-      const SceneValue* forces = hamiltonian.find(key);
-      const auto* list = forces != nullptr ? forces->get<SceneValue::Array>() : nullptr;
-      for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) take((*list)[k], parts_.forces());
-    }
-    return all;
   }
 
   void read_hamiltonian(const SceneValue& table) {

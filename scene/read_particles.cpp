@@ -49,6 +49,13 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
   if (reader.context().G) options.G = gravitation(reader);
   const std::optional<io::BodyEpoch> wanted = epoch;
   if (wanted) options.epoch = wanted->julian_day;
+  options.columns = reader.context().columns;
+  options.left_out = reader.context().other_columns;
+  // A key of bodies whatever the parts are.
+  const auto is_charge = [](const ColumnInfo& column) { return column.name == Charge::name; };
+  if (std::none_of(options.columns.begin(), options.columns.end(), is_charge))
+    options.columns.push_back(column_info<Charge>());
+  std::erase_if(options.left_out, is_charge);
   io::BodyTable table;
   ParticleSystem<double> s = particles_in_file(reader, "bodies", folder, "bodies.csv", "a table of bodies", effective,
                                                [&](const std::filesystem::path& file) {
@@ -62,6 +69,10 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
     }
     epoch = table.epoch;
     if (epoch->scale.empty() && wanted) epoch->scale = wanted->scale;
+  }
+  for (const std::string& name : table.left_out) {
+    warnings.push_back(
+        fmt::format("no part of this scene uses the column '{}' of {}: it is left out", name, reader.text("bodies")));
   }
   if (!table.light_center.empty()) warnings.push_back(table.light_center);
   if (table.without_sun && alone) {

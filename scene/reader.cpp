@@ -114,6 +114,16 @@ void TableReader::expect_same_constant(double G) const {
                         format_number(G), format_number(known), where));
 }
 
+void TableReader::expect_same_rate(double Omega) const {
+  if (!context_.Omega || path_ == "hamiltonian") return;
+  const double known = number(*context_.Omega, "Omega", "1/time");
+  // As near as one value in two units is.
+  if (std::abs(Omega - known) <= 1e-12 * std::abs(known)) return;
+  const std::string where = context_.Omega->line > 0 ? fmt::format(" in line {}", context_.Omega->line) : "";
+  fail("Omega", fmt::format("Omega = {} differs from the Omega = {}{} of the sheet; give it once, in [hamiltonian]",
+                            to_text(*table_.find("Omega")), to_text(*context_.Omega), where));
+}
+
 double TableReader::number(const SceneValue& value, std::string_view key, std::string_view dimension) const {
   const UnitSystem& units = *context_.units;
   const Dimension expected = parse_dimension(dimension);

@@ -38,6 +38,9 @@ struct SceneContext {
   std::string program = {};              ///< how to run the program that has the parts of this scene, where it has own
   /// Where notes go, each with its place: what is taken otherwise than written. Null: nobody wants them.
   std::vector<std::string>* notes = nullptr;
+  std::vector<ColumnInfo> other_columns = {};  ///< that those parts declare which the scene does not have
+  /// Omega of a Hamiltonian in a turning frame: the default of every angular velocity of that name.
+  std::optional<SceneValue> Omega = {};
 };
 
 /// Reads one table; remembers which keys were asked for.
@@ -68,6 +71,8 @@ class TableReader {
 
   /// @throws SceneError  for a constant of gravitation that is not the one of the scene
   void expect_same_constant(double G) const;
+  /// @throws SceneError  for an angular velocity that is not the one of the frame
+  void expect_same_rate(double Omega) const;
 
   /// One number with a dimension, of this or another table.
   double number(const SceneValue& value, std::string_view key, std::string_view dimension) const;

@@ -96,7 +96,11 @@ void RingPatch::check() const {
     if (edge > 0 && std::isfinite(edge)) continue;
     refuse_field("size", size, "is not a box; three lengths above 0 are expected");
   }
-  detail::check_above_zero("Omega", Omega, "angular velocity of the frame");
+  if (!Omega) {
+    throw Error("the angular velocity of the frame is missing; give Omega, or use the Hamiltonian 'shearing_sheet'",
+                {.key = "Omega"});
+  }
+  detail::check_above_zero("Omega", *Omega, "angular velocity of the frame");
   detail::check_above_zero("smallest", smallest, "radius");
   if (largest && !(*largest >= smallest && std::isfinite(*largest)))
     refuse_field("largest", *largest, fmt::format("is below the smallest radius, {}", smallest));
@@ -141,8 +145,8 @@ ParticleSystem<double> RingPatch::build(const UnitSystem& units) const {
   }
   std::sort(radii.rbegin(), radii.rend());
 
-  const double speed = dispersion.value_or(Omega * most);
-  double height = std::max(speed / Omega, smallest);
+  const double speed = dispersion.value_or(*Omega * most);
+  double height = std::max(speed / *Omega, smallest);
   Placed placed(size, smallest, most);
   std::vector<Vec3<double>> places;
   for (const double r : radii) {
@@ -176,7 +180,7 @@ ParticleSystem<double> RingPatch::build(const UnitSystem& units) const {
   auto& column = s.add_column<BodyRadius>();
   for (Index i = 0; i < s.size(); ++i) {
     column[i] = radii[static_cast<std::size_t>(i)];
-    s.velocities().add(i, Vec3<double>(0, -1.5 * Omega * places[static_cast<std::size_t>(i)][0], 0));
+    s.velocities().add(i, Vec3<double>(0, -1.5 * *Omega * places[static_cast<std::size_t>(i)][0], 0));
   }
   s.trim();
   s.restore_ids(ids);

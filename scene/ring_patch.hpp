@@ -20,7 +20,7 @@ namespace noether {
 /// @source Salo1995
 struct RingPatch {
   std::array<double, 3> size = {0, 0, 0};  ///< edges of the box [length]
-  double Omega = 1;                        ///< of the sheet [1/time]
+  std::optional<double> Omega = {};        ///< of the sheet [1/time]
   double smallest = 0;                     ///< radius [length]
   std::optional<double> largest = {};      ///< radius [length]; default: all are alike
   double exponent = 3;
@@ -37,7 +37,7 @@ struct RingPatch {
         formula("n(r) ~ r^(-exponent);  sum (4/3) pi r^3 density = surface_density L_x L_y"), source("Salo1995"),
         field<&RingPatch::size>("size", "length", "edges of the box along x, y and z")
             .required("[\"100 m\", \"100 m\", \"100 m\"]"),
-        field<&RingPatch::Omega>("Omega", "1/time", "angular velocity of the sheet").required("\"1.3143527e-4 1/s\""),
+        field<&RingPatch::Omega>("Omega", "1/time", "angular velocity; default: that of the shearing sheet"),
         field<&RingPatch::smallest>("smallest", "length", "smallest radius").required("\"1 m\""),
         field<&RingPatch::largest>("largest", "length", "largest radius; default: all are alike"),
         field<&RingPatch::exponent>("exponent", "1", "power of the distribution of radii"),

@@ -23,14 +23,20 @@ namespace {
 
 ParticleSystem<double> patch_of_depth(double depth) {
   if (depth < 0.1)
-    return RingPatch{.size = {100, 100, 40}, .smallest = 0.5, .density = 1, .optical_depth = depth}.build();
-  return RingPatch{.size = {6, 5, 60}, .smallest = 0.5, .density = 1, .optical_depth = depth}.build();
+    return RingPatch{.size = {100, 100, 40}, .Omega = 1, .smallest = 0.5, .density = 1, .optical_depth = depth}.build();
+  return RingPatch{.size = {6, 5, 60}, .Omega = 1, .smallest = 0.5, .density = 1, .optical_depth = depth}.build();
 }
 
 /// Radii from 0.05 to 5, masses over a factor of a million.
 ParticleSystem<double> patch_of_sizes() {
-  return RingPatch{
-      .size = {50, 40, 80}, .smallest = 0.05, .largest = 5, .exponent = 1, .density = 1, .particles = 160, .seed = 3}
+  return RingPatch{.size = {50, 40, 80},
+                   .Omega = 1,
+                   .smallest = 0.05,
+                   .largest = 5,
+                   .exponent = 1,
+                   .density = 1,
+                   .particles = 160,
+                   .seed = 3}
       .build();
 }
 

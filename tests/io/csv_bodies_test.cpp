@@ -52,6 +52,54 @@ TEST_CASE("a table of bodies gives the numbers it holds, in the units of the sys
   CHECK(s.velocities()[1] == Vec3<double>(1e-3 * km / second, 1 * au / day, 0));
 }
 
+TEST_CASE("a table has columns that parts give to particles, in units of their own", "[bodies]") {
+  using namespace units::solar;
+  // Of one number, of three, and one that nobody uses; names of the three as `convert` writes them.
+  const io::BodiesOptions options{.columns = {{.name = "radius", .dimension = "length"},
+                                              {.name = "spin", .dimension = "1/time", .width = 3},
+                                              {.name = "love_number", .dimension = "1"}},
+                                  .left_out = {{.name = "tide_lag", .dimension = "time"}}};
+  const auto read = [&](const std::string& content) {
+    const test::ScratchFolder folder;
+    test::write_text(folder / "b.csv", content);
+    return io::read_body_table(folder / "b.csv", options);
+  };
+  const std::string start = "mass [Msun],x [au],y,z,vx [au/day],vy,vz,";
+  const io::BodyTable table = read(start +
+                                   "spin[0],radius [km],spin[1] [1/day],tide_lag [s],spin[2],love_number\n"
+                                   "1,0,0,0,0,0,0,1,695700,2,60,3,0.02\n0,1,0,0,0,0,0,4,0,5,0,6,0\n");
+  const auto& columns = table.particles.columns();
+  REQUIRE(columns.size() == 3);
+  const auto number = [&](std::string_view name, int k, Index i) {
+    return columns.find(name)->visit([&](const auto& values) { return static_cast<double>(values.component(k)[i]); });
+  };
+  CHECK(number("radius", 0, 0) == 695700 * km);
+  CHECK(number("radius", 0, 1) == 0);
+  CHECK(number("love_number", 0, 0) == 0.02);
+  for (int k = 0; k < 3; ++k) {
+    CHECK(number("spin", k, 0) == (1 + k) / day);
+    CHECK(number("spin", k, 1) == (4 + k) / day);
+  }
+  CHECK(table.left_out == std::vector<std::string>{"tide_lag"});
+
+  const auto refused = [&](const std::string& columns_and_rows) {
+    const std::string message = error_of([&] { read(start + columns_and_rows); });
+    return message.substr(message.find("b.csv"));
+  };
+  CHECK(refused("radius\n") == "b.csv:1: column 'radius' has no unit; write 'radius [au]' or another unit of length");
+  CHECK(refused("radius [kg]\n") ==
+        "b.csv:1: column 'radius' is in 'kg', which has the dimension mass; expected length");
+  CHECK(refused("radius [km],radius [km]\n") == "b.csv:1: column 'radius' appears twice");
+  CHECK(refused("radius [km]\n1,0,0,0,0,0,0,big\n") == "b.csv:2: column 'radius' is 'big', which is not a number");
+  CHECK(refused("radius [km]\n1,0,0,0,0,0,0,\n") == "b.csv:2: column 'radius' is empty; expected a number");
+  CHECK(refused("radius [Mpc]\n1,0,0,0,0,0,0,1e300\n") == "b.csv:2: the radius of body_1 is not finite in these units");
+  CHECK(refused("spin[0] [1/day],spin[2]\n") ==
+        "b.csv:1: there is no column spin[1]; expected all of spin[0], spin[1], spin[2]");
+  CHECK(refused("spin [1/day]\n") ==
+        "b.csv:1: column 'spin' has 3 numbers; give a column for each: spin[0], spin[1], spin[2]");
+  CHECK(csv_refusal("mass,x,y,z,vx,vy,vz,radius\n", "reduced").starts_with("b.csv:1: unknown column 'radius'"));
+}
+
 TEST_CASE("a table without names numbers its bodies, and one in reduced units takes bare numbers", "[bodies]") {
   const auto s = read_csv("\xEF\xBB\xBFmass,x,y,z,vx,vy,vz [1]\n1,0,0,0,0,0,0.1\n2,1,0,0,0,0,0", "reduced");
   REQUIRE(s.size() == 2);

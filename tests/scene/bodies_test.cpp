@@ -1,6 +1,8 @@
 // BodyScene of files and of tables: together, about one another, and as of an epoch.
 
+#include "engine/charge.hpp"
 #include "engine/given_orbit.hpp"
+#include "engine/sphere_columns.hpp"
 #include "numbers/quantity.hpp"
 #include "scene/read_particles.hpp"
 #include "scene/scene.hpp"
@@ -282,6 +284,49 @@ TEST_CASE("a site has the charge that it is given, 0 too, else that of its type"
   CHECK(charges("sites = 'bodies.txt'\n", "x,y,z,mass,charge\n1,0,0,1,0\n-1,0,0,1,0.5\n") ==
         std::vector<double>{0, 0.5});
   CHECK(charges("sites = 'bodies.txt'\n", "x,y,z,mass\n1,0,0,1\n-1,0,0,1\n") == std::vector<double>{-1, -1});
+}
+
+TEST_CASE("columns of a table are what parts of the scene give to particles", "[scene][bodies]") {
+  const std::string file =
+      "name,mass,x,y,z,vx,vy,vz,radius,charge\none,1,1,1,0,0,-1,0,0.5,2\nother,2,1,2.5,0.25,0,-2,0,0.75,-1\n";
+  const std::string spheres =
+      "[hamiltonian]\ntype = 'shearing_sheet'\nOmega = 1\n[[hamiltonian.force]]\ntype = 'hard_spheres'\n"
+      "restitution = 0.5\n[integrator]\nmethod = 'verlet'\nstep = 0.05\nsteps = 100\n";
+  const std::string one = "x = [1, 1, 0]\nv = [0, -1, 0]\nradius = 0.5\nmass = 1\ncharge = 2\n",
+                    other = "x = [1, 2.5, 0.25]\nv = [0, -2, 0]\nradius = 0.75\nmass = 2\ncharge = -1\n";
+  // From the table, from tables of the scene, and half from each: the same spheres, which touch.
+  const auto run = [](const BodyScene& bodies) {
+    Simulation<double> sim = assemble(bodies.scene());
+    REQUIRE(sim.run(100).ok());
+    return sim.particles();
+  };
+  const std::string box = "box = [10, 8, 20]\n";
+  const auto expected =
+      run(BodyScene(box + body_table("one", one) + body_table("other", other), "", "reduced", spheres));
+  CHECK(expected.column<ContactCount>()[0] > 0);
+  const std::string first = file.substr(0, file.find("other"));
+  for (const BodyScene& bodies :
+       {BodyScene(box + "bodies = 'bodies.txt'\n", file, "reduced", spheres),
+        BodyScene(box + "bodies = 'bodies.txt'\n" + body_table("other", other), first, "reduced", spheres)}) {
+    const auto found = run(bodies);
+    CHECK((found.positions().all() == expected.positions().all()));
+    CHECK((found.column<BodyRadius>().all() == expected.column<BodyRadius>().all()));
+    CHECK((found.column<ContactHeat>().all() == expected.column<ContactHeat>().all()));
+    CHECK(found.column<Charge>()[0] == 2);
+    CHECK(found.column<Charge>()[1] == -1);
+  }
+  // A scene without spheres has no use for radii, and says so; a name that no part has is refused.
+  const BodyScene without("bodies = 'bodies.txt'\n", file, "reduced",
+                          replaced(replaced(gravity_alone, "1 day", "1"), "10 day", "10"));
+  CHECK_FALSE(without.scene().particles.has<BodyRadius>());
+  CHECK(warnings_of(without.scene()) ==
+        std::vector<std::string>{"no part of this scene uses the column 'radius' of bodies.txt: it is left out",
+                                 "the particles have charges that no force uses"});
+  CHECK(BodyScene("bodies = 'bodies.txt'\n", replaced(file, "radius", "radios"), "reduced", spheres).refusal() ==
+        "bodies.txt:1: unknown column 'radios'; did you mean 'radius'?");
+  CHECK(BodyScene(box + "bodies = 'bodies.txt'\n", replaced(file, "0.75", "-1"), "reduced", spheres)
+            .refusal()
+            .find("the radius of 'other' is -1; 0 or more is expected") != std::string::npos);
 }
 
 TEST_CASE("what a splitting has in itself pulls at the centres of bodies, under methods on groups too",

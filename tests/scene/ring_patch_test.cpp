@@ -1,14 +1,20 @@
 /// The builder of a patch of a ring: as many spheres as it should have, of the radii it should, nowhere in each other.
 
 #include "scene/ring_patch.hpp"
+#include "engine/simulation.hpp"
 #include "engine/sphere_columns.hpp"
 #include "integrators/shearing_sheet.hpp"
+#include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/ring_spheres.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 namespace noether {
@@ -76,22 +82,29 @@ TEST_CASE("a patch of a ring has its surface density, radii and velocities", "[r
 }
 
 TEST_CASE("patches are thin and thick, of spheres alike and over a factor of 100", "[ring_patch]") {
-  const auto thin = RingPatch{.size = {100, 100, 40}, .smallest = 0.5, .density = 1, .optical_depth = 0.01}.build();
+  const auto thin =
+      RingPatch{.size = {100, 100, 40}, .Omega = 1, .smallest = 0.5, .density = 1, .optical_depth = 0.01}.build();
   check_room(thin);
   CHECK(thin.size() == 128);  // 0.01 100 100/(pi/4) = 127.3
-  const auto thick = RingPatch{.size = {10, 8, 60}, .smallest = 0.5, .density = 1, .optical_depth = 3}.build();
+  const auto thick =
+      RingPatch{.size = {10, 8, 60}, .Omega = 1, .smallest = 0.5, .density = 1, .optical_depth = 3}.build();
   check_room(thick);
   CHECK(thick.size() == 306);  // 305.6
-  const auto wide =
-      RingPatch{.size = {40, 30, 60}, .smallest = 0.05, .largest = 5, .exponent = 2.5, .density = 1, .particles = 600}
-          .build();
+  const auto wide = RingPatch{.size = {40, 30, 60},
+                              .Omega = 1,
+                              .smallest = 0.05,
+                              .largest = 5,
+                              .exponent = 2.5,
+                              .density = 1,
+                              .particles = 600}
+                        .build();
   check_room(wide);
   CHECK(wide.size() == 600);
   CHECK(wide.column<BodyRadius>()[0] > 20 * wide.column<BodyRadius>()[599]);
 }
 
 TEST_CASE("patches that cannot be are refused", "[ring_patch]") {
-  const RingPatch good{.size = {10, 8, 20}, .smallest = 0.5, .density = 1, .optical_depth = 0.2};
+  const RingPatch good{.size = {10, 8, 20}, .Omega = 1, .smallest = 0.5, .density = 1, .optical_depth = 0.2};
   const auto refused = [](RingPatch patch, const auto& change) {
     change(patch);
     static_cast<void>(patch.build());
@@ -108,6 +121,55 @@ TEST_CASE("patches that cannot be are refused", "[ring_patch]") {
                     Catch::Contains("is not a box; three lengths above 0 are expected"));
   CHECK_THROWS_WITH(refused(good, [](RingPatch& p) { p.optical_depth = 30; }),
                     Catch::Contains("has no room for spheres of all 3056 radii without overlaps; make it larger"));
+}
+
+TEST_CASE("Omega is told once, in the Hamiltonian, and another one is refused", "[ring_patch]") {
+  const auto scene = [](const std::string& of_builder, const std::string& of_monitors) {
+    return "units = 'si'\n[particles]\ntype = 'ring_patch'\nsize = ['10 m', '8 m', '20 m']\nsmallest = '0.5 m'\n"
+           "density = '400 kg/m^3'\noptical_depth = 0.3\n" +
+           of_builder +
+           "[hamiltonian]\ntype = 'shearing_sheet'\nOmega = '1.5e-4 1/s'\n[[hamiltonian.force]]\n"
+           "type = 'hard_spheres'\nrestitution = 0.5\n[integrator]\nmethod = 'verlet'\nstep = '100 s'\nsteps = 20\n"
+           "[[every]]\ntype = 'velocity_dispersion'\nsteps = 1\n" +
+           of_monitors + "[[every]]\ntype = 'viscosity'\nsteps = 1\n" + of_monitors +
+           "[[every]]\ntype = 'wakes'\nsteps = 1\nshortest = '3 m'\n" + of_monitors;
+  };
+  const auto series = [](const std::string& text) {
+    Simulation<double> sim = assemble(read_scene(text, "scene.toml"));
+    REQUIRE(sim.run(20).ok());
+    std::vector<std::string> all;  // with all digits; a wave without contrast has no pitch
+    sim.for_each_monitor([&](const std::string& /*name*/, const AnyMonitor<double>& monitor) {
+      for (const Series& one : monitor.series()) {
+        for (const double value : one.values) all.push_back(fmt::format("{}", value));
+      }
+    });
+    return all;
+  };
+  // Left out, the same, and the same in other units.
+  const std::string said = "Omega = '1.5e-4 1/s'\n", in_hours = "Omega = '0.54 1/hour'\n";
+  const auto expected = series(scene(said, said));
+  REQUIRE(expected.size() == 10);  // 4 of the dispersion and of the viscosity, 2 of the wakes
+  CHECK(std::stod(expected[0]) > 0);
+  CHECK(series(scene("", "")) == expected);
+  CHECK(series(scene("", in_hours)).size() == 10);
+  // The scene as it is stored says it once.
+  const std::string stored = read_scene(scene("", ""), "scene.toml").effective_toml;
+  CHECK(stored.find("Omega") == stored.rfind("Omega"));
+  CHECK(series(stored)[0] == expected[0]);
+
+  const auto refusal = [&](const std::string& of_builder, const std::string& of_monitors) {
+    return test::refusal_of([&] { read_scene(scene(of_builder, of_monitors), "scene.toml"); });
+  };
+  const std::string other = "Omega = '1.5e-3 1/s'\n";
+  CHECK(refusal(other, "") ==
+        "Omega = \"1.5e-3 1/s\" differs from the Omega = \"1.5e-4 1/s\" in line 11 of the sheet; give it "
+        "once, in [hamiltonian]");
+  CHECK(refusal("", other) ==
+        "Omega = \"1.5e-3 1/s\" differs from the Omega = \"1.5e-4 1/s\" in line 10 of the sheet; give it "
+        "once, in [hamiltonian]");
+  CHECK_THROWS_WITH(RingPatch({.size = {10, 8, 20}, .smallest = 0.5, .density = 1, .optical_depth = 0.2}).build(),
+                    "the angular velocity of the frame is missing; give Omega, or use the Hamiltonian "
+                    "'shearing_sheet'");
 }
 
 }  // namespace noether
