@@ -17,9 +17,10 @@ function(noether_link_rooms target scope)
   endforeach()
 endfunction()
 
-# Of a wheel, the rooms whose own loops take the time of runs; the others are small before they are quick. What is in lanes is
-# compiled for speed everywhere.
-set(rooms_of_loops numbers neighbors engine integrators)
+# Of a wheel, the rooms, and the sources of others, whose own loops take the time of runs; the rest is small before it is quick.
+# What is in lanes is compiled for speed everywhere.
+set(rooms_of_loops numbers neighbors engine)
+set(sources_of_loops composition free_rotor kepler kinetic_potential sphere_contacts wisdom_holman wisdom_holman_lanes)
 
 function(noether_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 library "" "EXCEPT;PRECOMPILED_BY" "SOURCES;ROOMS;LINK;LINK_PRIVATE;PRECOMPILE")
@@ -58,6 +59,12 @@ function(noether_library folder)
         target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
       else()
         target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Os>)
+        foreach(source IN LISTS sources)
+          cmake_path(GET source STEM name)
+          if(name IN_LIST sources_of_loops)
+            set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O2>)
+          endif()
+        endforeach()
       endif()
     endif()
     if(simd_sources)
