@@ -5,7 +5,9 @@
 #include "forces/gr_potential.hpp"
 #include "forces/speed_of_light.hpp"
 #include "integrators/composition.hpp"
+#include "integrators/force_motion.hpp"
 #include "integrators/lane_method.hpp"
+#include "integrators/methods/collocation_table.hpp"
 #include "integrators/planet_systems.hpp"
 #include "integrators/system_lanes.hpp"
 #include "integrators/wisdom_holman.hpp"
@@ -47,6 +49,16 @@ bool is_kicked(const Scene& scene) {
   return scene.hamiltonian.splitting.only_forces && claims.twists && claims.inertial && !claims.kepler;
 }
 
+/// Gravity alone under a method of eight stages, which has a form of its own for it: stages in lanes, and separations
+/// that keep their digits in close pairs.
+bool is_gravity_in_stages(const Scene& scene) {
+  if (!scene.integrator.classical || scene.particles.size() < 2) return false;
+  const CollocationTable* const table = collocation_of(scene.integrator.classical->info->name);
+  if (table == nullptr || table->stages() != member_lanes) return false;
+  const detail::PointGravity<double> gravity(forces_of(scene).terms(), scene.particles);
+  return gravity.G && gravity.beside.terms().empty();
+}
+
 std::string why_alone_by_method(const Scene& scene) {
   const SceneIntegrator& integrator = scene.integrator;
   if (!integrator.classical) return "";
@@ -71,6 +83,8 @@ std::string why_alone_by_hamiltonian(const Scene& scene) {
     if (force.force.claims().range > 0) return fmt::format("the force '{}' has a cutoff", force.name);
     if (force.force.claims().bonded) return fmt::format("the force '{}' acts on bonds", force.name);
   }
+  if (is_gravity_in_stages(scene))
+    return fmt::format("the stages of '{}' fill the lanes where gravity acts alone", scene.integrator.method);
   if (!is_planetary(scene)) return "";
   const std::string* which = made.splitting.effective.find("coordinates")->get<std::string>();
   if (which != nullptr && *which != "jacobi") return fmt::format("coordinates = \"{}\" have no lanes", *which);
