@@ -377,7 +377,11 @@ class SceneReader {
       if (type == "trajectory") watch.kind = SceneWatch::Kind::trajectory;
       if (type == "checkpoint") watch.kind = SceneWatch::Kind::checkpoint;
       for (const char* key : {"every", "steps", "times", "after"}) reader.find(key);
+      // What acts is the default of monitors, also where the scene leaves its constant to the units.
+      const bool of_units = context_.gravitates && !context_.G && table->find("G") == nullptr;
+      if (of_units) context_.G = SceneValue::of(scene_.units->G);
       if (kind != nullptr) watch.monitor = kind->read(reader);
+      if (of_units) context_.G.reset();
       if (kind == nullptr && type == "checkpoint") reader.find("wall");
       if (kind == nullptr && type == "trajectory") watch.sites = frames_have_sites(reader, effective);
       reader.finish();

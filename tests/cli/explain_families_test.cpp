@@ -163,6 +163,17 @@ TEST_CASE("explain tells what a step over an action takes, and who can watch it"
   CHECK_FALSE(has(output(folder, "explain scene.toml --set system.type=lorenz --set integrator.method=rk4"), "shadow"));
 }
 
+TEST_CASE("explain recommends steps of a sheet by what limits them there", "[cli][explain]") {
+  // At the surface of 'large' 2 pi sqrt(0.3^3/1)/20 = 0.0516; without gravity nothing limits a step.
+  const SceneFolder folder(read_text(std::string(NOETHER_SOURCE_DIR) + "/study/suite/hard_spheres.toml"));
+  check_explained(output(folder, "explain scene.toml"),
+                  {"\nstep: 0.002; at most 0.0516 is recommended, a twentieth of a turn about large at its surface; "
+                   "10000 steps in all\n"});
+  CHECK(json_member(output(folder, "explain scene.toml --json"), "recommended_step").starts_with("0.0516"));
+  check_explained(output(folder, "explain scene.toml --set hamiltonian.force.gravity.G=1e-30"),
+                  {"; at most 0.0628 is recommended, a hundredth of a turn of the frame; "});
+}
+
 TEST_CASE("explain tells the mesh of charges, its errors, and that without charges it costs nothing",
           "[cli][explain]") {
   const SceneFolder folder(charges_scene);

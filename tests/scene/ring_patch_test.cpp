@@ -172,4 +172,25 @@ TEST_CASE("Omega is told once, in the Hamiltonian, and another one is refused", 
                     "'shearing_sheet'");
 }
 
+TEST_CASE("the viscosity of a patch has the part of the gravity that acts", "[ring_patch]") {
+  const auto gravitational = [](const std::string& G) {
+    const std::string text =
+        "units = 'si'\n[particles]\ntype = 'ring_patch'\nsize = ['10 m', '8 m', '20 m']\nsmallest = '0.5 m'\n"
+        "density = '400 kg/m^3'\noptical_depth = 0.3\n[hamiltonian]\ntype = 'shearing_sheet'\nOmega = '1.5e-4 1/s'\n" +
+        G +
+        "[[hamiltonian.force]]\ntype = 'gravity'\n[integrator]\nmethod = 'verlet'\nstep = '100 s'\nsteps = 2\n"
+        "[[every]]\ntype = 'viscosity'\nsteps = 1\n";
+    Simulation<double> sim = assemble(read_scene(text, "scene.toml"));
+    REQUIRE(sim.run(2).ok());
+    double found = 0;
+    sim.for_each_monitor([&](const std::string& /*name*/, const AnyMonitor<double>& monitor) {
+      for (const Series& one : monitor.series()) found = one.name == "gravitational" ? one.values[0] : found;
+    });
+    return found;
+  };
+  const double of_units = gravitational(""), given = gravitational("G = '6.6743e-11 m^3/kg/s^2'\n");
+  CHECK(given != 0);
+  CHECK(std::abs(of_units / given - 1) <= 1e-9);
+}
+
 }  // namespace noether
