@@ -52,7 +52,7 @@ in_bare() {
 }
 in_bare "dpkg --add-architecture arm64
   apt-get update
-  apt-get install -y --no-install-recommends g++-aarch64-linux-gnu cmake ninja-build qemu-user libeigen3-dev \
+  apt-get install -y --no-install-recommends g++-aarch64-linux-gnu cmake ninja-build qemu-user libeigen3-dev libgomp1:arm64 \
     libcli11-dev libtomlplusplus-dev:arm64 libhwy-dev:arm64 libfmt-dev:arm64 libhdf5-dev:arm64 libssl-dev:arm64 \
     zlib1g-dev:arm64" >"$scratch/apt.log" 2>&1 || {
   tail -n 20 "$scratch/apt.log"
