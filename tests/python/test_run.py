@@ -17,7 +17,7 @@ FIGURE_EIGHT = "sha256:d11e8def73cbfd5e91d3afcca2bfe7c3539c8909d637bf8338cfae50f
 # How much is run of examples that would take more than half a second.
 SHORTENED = {
     "alkane_liquid": 20, "asteroid_binary": 100, "butane": 250, "chain_of_10000": 10, "cyclohexane": 50, "decane": 50, "lj_melt": 50,
-    "moonlet": 40, "saturn_rings": 10,
+    "moonlet": 40, "saturn_rings": 221,
     "oblate_saturn": 1000, "outer_solar_system": 4000, "pythagorean": 10_000, "tumbling_block": 20, "two_phase_slab": 20,
     "water_box": 20, "fene_melt": 50, "weber_pair": 500, "solar_system": 1000, "kirkwood_gaps": 1000, "trappist_1": 1000,
     "trojans_and_plutinos": 1000}
