@@ -44,33 +44,28 @@ method = ")" +
          "\n";
 }
 
-TEST_CASE("explicit methods in lanes have the bits of each member alone", "[ensemble][lanes]") {
+/// Members of 60 steps in lanes have the bits that each has alone.
+void check_bits(const std::string& forces, const std::string& method) {
   const ScratchFolder folder;
-  const auto check = [&](const std::string& forces, const std::string& method) {
-    INFO(forces << " " << method);
-    write_text(folder / "scene.toml", stepped(forces, method, 60));
-    REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
-    check_company(EnsembleScene(folder / "scene.toml", plan_of(near), {}, true, standard_parts()), 16);
-  };
-  check(gravity, "rk4");
-  check(gravity + relativity, "dormand_prince_5");  // its last stage is state
-  check(gravity + oblate, "dprkn_12");
+  INFO(forces << " " << method);
+  write_text(folder / "scene.toml", stepped(forces, method, 60));
+  REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
+  check_company(EnsembleScene(folder / "scene.toml", plan_of(near), {}, true, standard_parts()), 16);
+}
+
+TEST_CASE("explicit methods in lanes have the bits of each member alone", "[ensemble][lanes]") {
+  check_bits(gravity, "rk4");
+  check_bits(gravity + relativity, "dormand_prince_5");  // its last stage is state
+  check_bits(gravity + oblate, "dprkn_12");
 }
 
 TEST_CASE("collocation in lanes has the bits of each member alone, however many sweeps the others take",
           "[ensemble][lanes]") {
-  const ScratchFolder folder;
   // Near-parabolic arcs and encounters, at which sweeps do not converge and a member goes on by Newton's iteration,
   // beside members of a few sweeps a step.
-  const auto check = [&](const std::string& forces, const std::string& method) {
-    INFO(forces << " " << method);
-    write_text(folder / "scene.toml", stepped(forces, method, 60));
-    REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
-    check_company(EnsembleScene(folder / "scene.toml", plan_of(near), {}, true, standard_parts()), 16);
-  };
-  check(gravity, "gauss_3");
-  check(gravity + oblate, "implicit_midpoint");
-  check(gravity + relativity, "gauss_8");
+  check_bits(gravity, "gauss_3");
+  check_bits(gravity + oblate, "implicit_midpoint");
+  check_bits(gravity + relativity, "gauss_8");
 }
 
 TEST_CASE("classical methods in lanes are the runs of their scenes to rounding", "[ensemble][lanes]") {
