@@ -45,6 +45,17 @@ template <class V> struct SumWithError {
   }
 };
 
+/// What rounding takes from the product of a and b, where the processor can tell; elsewhere 0.
+template <class D>
+HWY_INLINE hn::Vec<D> fused_product_error([[maybe_unused]] D d, [[maybe_unused]] hn::Vec<D> a,
+                                          [[maybe_unused]] hn::Vec<D> b, [[maybe_unused]] hn::Vec<D> product) {
+#if HWY_NATIVE_FMA
+  return hn::MulSub(a, b, product);
+#else
+  return hn::Zero(d);
+#endif
+}
+
 /// value + low = sum + rest + low for the first `count` numbers, where the rest is smaller than the sum.
 template <class D>
 HWY_INLINE void end_sum(D d, double* value, double* low, std::ptrdiff_t count, hn::Vec<D> sum, hn::Vec<D> lost,

@@ -255,15 +255,6 @@ void coefficient(std::ptrdiff_t n, const double* rates, const double* w, double*
   }
 }
 
-/// What rounding takes from a product, where the processor can tell.
-HWY_INLINE Vector rounded_off([[maybe_unused]] Vector a, [[maybe_unused]] Vector b, [[maybe_unused]] Vector product) {
-#if HWY_NATIVE_FMA
-  return hn::MulSub(a, b, product);
-#else
-  return hn::Zero(Lanes());
-#endif
-}
-
 /// A variable in each lane.
 void finish(const StepSums& sums) {
   const Lanes d;
@@ -275,13 +266,13 @@ void finish(const StepSums& sums) {
     const Variables variables(s.rates + stages * m);
     if (s.q != nullptr) {
       const Vector v = load_first(d, s.v + m, count), hv = hn::Mul(h, v);
-      const Vector lower = hn::MulAdd(h, load_first(d, s.v_low + m, count), rounded_off(h, v, hv));
+      const Vector lower = hn::MulAdd(h, load_first(d, s.v_low + m, count), fused_product_error(d, h, v, hv));
       const Vector sum = variables.sum(twice), small = hn::MulAdd(h2_low, sum, lower);
       const Vector bend = hn::MulAdd(h2, sum, hn::MulAdd(h2, variables.sum(twice_low), small));
       add_with_error(d, s.q + m, s.q_low + m, count, hv, bend);
     }
     const Vector slope = variables.sum(weights), kick = hn::Mul(h, slope);
-    const Vector small = hn::MulAdd(h, variables.sum(weights_low), rounded_off(h, slope, kick));
+    const Vector small = hn::MulAdd(h, variables.sum(weights_low), fused_product_error(d, h, slope, kick));
     add_with_error(d, s.v + m, s.v_low + m, count, kick, small);
   }
 }

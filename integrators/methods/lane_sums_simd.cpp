@@ -89,15 +89,6 @@ void take(std::ptrdiff_t n, const double* fresh, const std::int64_t* on, double*
   }
 }
 
-/// What rounding takes from a product, where the processor can tell.
-HWY_INLINE Vector rounded_off([[maybe_unused]] Vector a, [[maybe_unused]] Vector b, [[maybe_unused]] Vector product) {
-#if HWY_NATIVE_FMA
-  return hn::MulSub(a, b, product);
-#else
-  return hn::Zero(Lanes());
-#endif
-}
-
 /// A variable at a time.
 void finish(const LaneEnd& sums) {
   const Lanes d;
@@ -114,7 +105,7 @@ void finish(const LaneEnd& sums) {
       bend_low = hn::MulAdd(hn::Set(d, s.twice_low[j]), rate, bend_low);
     }
     const Vector v = hn::LoadU(d, s.v + at), hv = hn::Mul(h, v);
-    const Vector lower = hn::MulAdd(h, hn::LoadU(d, s.v_low + at), rounded_off(h, v, hv));
+    const Vector lower = hn::MulAdd(h, hn::LoadU(d, s.v_low + at), fused_product_error(d, h, v, hv));
     add_with_error(d, s.q + at, s.q_low + at, lanes, hv, hn::Add(bend, hn::Add(bend_low, lower)));
     add_with_error(d, s.v + at, s.v_low + at, lanes, kick, kick_low);
   }
