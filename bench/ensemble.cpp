@@ -306,13 +306,15 @@ void measure(const bench::Rows& rows, const Orbits& orbits, const Stepped& one, 
       if (!single.run(one.steps).ok()) throw Error("a run failed");
     });
     if (round == 0 && peer.version()) tolerance = tolerance_of(peer, orbits, error);
-    const auto other = tolerance ? heyoka_run(peer, orbits, *tolerance) : std::nullopt;
-    if (round == 0) continue;
-    in_lanes.push_back(1e6 * seconds / LaneRun::lanes);
-    alone.push_back(1e6 * by_itself);
-    if (!other) continue;
-    theirs.push_back(1e6 * other->seconds / LaneRun::lanes);
-    their_errors.push_back(other->error);
+    if (round > 0) {
+      in_lanes.push_back(1e6 * seconds / LaneRun::lanes);
+      alone.push_back(1e6 * by_itself);
+    }
+    if (!tolerance) continue;
+    if (const auto other = heyoka_run(peer, orbits, *tolerance); other && round > 0) {
+      theirs.push_back(1e6 * other->seconds / LaneRun::lanes);
+      their_errors.push_back(other->error);
+    }
   }
   std::optional<bench::Peer> beside, beside_error;
   if (!theirs.empty()) {

@@ -198,8 +198,7 @@ void ConstraintEquations<Real>::move_to(ParticleSystem<Real>& s, const VectorCol
     s.positions() = x;
     return;
   }
-  for (Index i = 0; i < s.size(); ++i) s.shift(i, x[i], Vec3<Real>::Zero());
-  s.moved();
+  s.shift_in_box(x);
 }
 
 template <class Real> void ConstraintEquations<Real>::round_to_grid(const Box& box, VectorColumn<Real>& x) const {

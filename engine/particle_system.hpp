@@ -186,12 +186,18 @@ template <class Real = double> class ParticleSystem {
   void advance_positions(const Real& h) {
     version_ = detail::fresh_version();
     if (box_.is_periodic()) {
-      advance_in_box(h);
+      advance_in_box(h, v_);
     } else if (low_) {
       compensated_add(x_, low_->x, h, v_);
     } else {
       add_scaled(x_, h, v_);
     }
+  }
+  /// x += dx for every particle in a periodic box, of shape (n) [length].
+  /// @cost O(n), no allocation
+  void shift_in_box(const VectorColumn<Real>& dx) {
+    version_ = detail::fresh_version();
+    advance_in_box(Real(1), dx);
   }
   /// v += h a for every particle [length/time].
   void advance_velocities(const Real& h, const VectorColumn<Real>& a) {
@@ -357,16 +363,16 @@ template <class Real = double> class ParticleSystem {
     x_.add(i, dx);
     if (box_.is_periodic()) wrap(i);
   }
-  void advance_in_box(const Real& h) {
+  void advance_in_box(const Real& h, const VectorColumn<Real>& rate) {
     if constexpr (std::is_same_v<Real, double>) {
       for_blocks(size(), [&](Index begin, Index end) {
         for (int k = 0; k < 3; ++k) {
-          box_.advance(k, h, v_.component(k) + begin, x_.component(k) + begin, images_.component(k) + begin,
+          box_.advance(k, h, rate.component(k) + begin, x_.component(k) + begin, images_.component(k) + begin,
                        end - begin);
         }
       });
     } else {
-      x_.add_scaled(h, v_);
+      x_.add_scaled(h, rate);
       wrap();
     }
   }
