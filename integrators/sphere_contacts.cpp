@@ -213,7 +213,11 @@ void SphereContacts::fly(Sphere& sphere, double time) const {
 SphereContacts::Difference SphereContacts::difference(const Sphere& one, const Sphere& other, double time) const {
   Difference made{nearest(other.x - one.x), other.v - one.v};
   made.d[1] -= slope_at(time) * made.d[0];
-  if (box_.is_periodic()) made.d[1] -= box_.edges()[1] * std::nearbyint(made.d[1] / box_.edges()[1]);
+  if (box_.is_periodic()) {
+    const Vec3<double>& edges = box_.edges();
+    made.d[1] -= edges[1] * std::nearbyint(made.d[1] / edges[1]);
+    made.lift = edges[2] * std::nearbyint((made.d[2] - (height(other) - height(one))) / edges[2]);
+  }
   made.u[1] -= shear_ * made.d[0];
   return made;
 }
@@ -223,9 +227,9 @@ SphereContacts::Difference SphereContacts::difference(const Sphere& one, const S
 /// c: the first root of that parabola lies before the one that is sought, or there is none.
 std::optional<double> SphereContacts::first_root(const Difference& now, double distance, double left) const {
   const double Omega = rates_.Omega, Omega_z = rates_.Omega_z;
-  const double w = now.u[1] + shear_ * now.d[0], guide = now.d[0] + 2 * w / Omega;
+  const double w = now.u[1] + shear_ * now.d[0], guide = now.d[0] + 2 * w / Omega, above = now.d[2] - now.lift;
   const double bend2 = 4 * Omega * Omega * (now.u[0] * now.u[0] + 4 * w * w) +
-                       Omega_z * Omega_z * (now.u[2] * now.u[2] + Omega_z * Omega_z * now.d[2] * now.d[2]);
+                       Omega_z * Omega_z * (now.u[2] * now.u[2] + Omega_z * Omega_z * above * above);
   const double bend = std::sqrt(bend2);
   const double radius2 = distance * distance, target2 = std::min(radius2, now.d.squaredNorm());
   Vec3<double> d = now.d, u = now.u;
@@ -257,8 +261,8 @@ std::optional<double> SphereContacts::first_root(const Difference& now, double d
     u[1] = w_now - shear_ * d[0];
     if (Omega_z > 0) {
       const double sz = std::sin(Omega_z * t), cz = std::cos(Omega_z * t);
-      d[2] = now.d[2] * cz + now.u[2] * sz / Omega_z;
-      u[2] = now.u[2] * cz - now.d[2] * Omega_z * sz;
+      d[2] = now.lift + (above * cz + now.u[2] * sz / Omega_z);
+      u[2] = now.u[2] * cz - above * Omega_z * sz;
     } else {
       d[2] = now.d[2] + now.u[2] * t;
     }

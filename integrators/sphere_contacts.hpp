@@ -73,6 +73,7 @@ class SphereContacts {
   };
   struct Difference {
     Vec3<double> d, u;
+    double lift = 0;  ///< of an image along z: what is pulled to the middle is d_z without it
   };
 
   double slope_at(double time) const { return slope_ + shear_ * time; }

@@ -10,8 +10,11 @@
 #include "monitors/ring_monitors.hpp"
 #include "scene/ring_patch.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/contacts_by_pairs.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/ring_spheres.hpp"
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <string>
@@ -196,14 +199,42 @@ TEST_CASE("boxes of a few radii are right, or refused with the edges that they n
       CHECK(total_contacts(end.particles) > 30);
     }
   }
-  // Two radii: a sphere that fills the box.
-  ParticleSystem<double> full(unit_system("reduced"));
-  full.set_box(Box::periodic({1, 1, 1}));
-  full.add("", 1, {0.5, 0.5, 0}, {0, 0, 0});
-  full.add_column<BodyRadius>()[0] = 0.5;
-  CHECK_THROWS_WITH(run(sheet_of_spheres({}, {}), schemes::verlet, full, 0.1, 1),
-                    "the box has an edge of 1, but a sphere of radius 0.5 could meet two images of another one in less "
-                    "than 5 radii; make each edge 2.5 or more");
+  // Along one axis alone or along all, each step is that of a search through all images. In the shortest boxes
+  // images along z are met too, which have a middle of their own.
+  for (const int axis : {0, 1, 2, 3}) {
+    Vec3<double> edges = Vec3<double>::Constant(axis < 3 ? 6 : 2.5);
+    if (axis < 3) edges[axis] = 2.5;
+    CAPTURE(edges);
+    const SearchedRun run = searched_run(patch({.count = axis < 3 ? 20 : 6,
+                                                .edges = edges,
+                                                .smallest = 0.5,
+                                                .largest = 0.5,
+                                                .thickness = 2.5,
+                                                .speed = 1.5}),
+                                         {.restitution = 0.9}, 0.02, 400);
+    CAPTURE(run.contacts, run.contacts_above);
+    CHECK(run.wrong_steps == 0);
+    CHECK(run.contacts > 30);
+    CHECK(run.worst <= 1e-10);
+    if (axis >= 2) CHECK(run.contacts_above > 5);
+  }
+  // From two radii, where a sphere fills the box, to just below five.
+  for (const double radii : {2.0, 2.1, 3.0, 4.0, 4.999}) {
+    for (const int axis : {0, 1, 2, 3}) {
+      Vec3<double> edges = Vec3<double>::Constant(axis < 3 ? 6 : radii / 2);
+      if (axis < 3) edges[axis] = radii / 2;
+      CAPTURE(edges);
+      ParticleSystem<double> small(unit_system("reduced"));
+      small.set_box(Box::periodic(edges));
+      small.add("", 1, {0.5, 0.5, 0}, {0, 0, 0});
+      small.add_column<BodyRadius>()[0] = 0.5;
+      CHECK_THROWS_WITH(
+          run(sheet_of_spheres({}, {}), schemes::verlet, small, 0.1, 1),
+          fmt::format("the box has an edge of {}, but a sphere of radius 0.5 could meet two images of another one in "
+                      "less than 5 radii; make each edge 2.5 or more",
+                      radii / 2));
+    }
+  }
 }
 
 }  // namespace noether::test

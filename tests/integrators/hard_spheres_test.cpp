@@ -7,6 +7,7 @@
 #include "integrators/shearing_sheet.hpp"
 #include "integrators/sphere_contacts.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/contacts_by_pairs.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/ring_spheres.hpp"
 
@@ -19,185 +20,21 @@ namespace noether {
 namespace {
 
 using test::deepest_overlap;
+using test::Place;
+using test::searched_run;
+using test::SearchedRun;
 using test::sheet_of_spheres;
 using test::total_contacts;
-
-/// A free particle after a time, by the closed form of an epicycle about its guiding centre.
-struct Place {
-  Vec3<double> x, v;  ///< in space
-
-  Place at(double t, double Omega, double Omega_z) const {
-    const double w = v[1] + 1.5 * Omega * x[0], guide = x[0] + 2 * w / Omega, c = std::cos(Omega * t),
-                 s = std::sin(Omega * t);
-    const double across = guide - 2 * w / Omega * c + v[0] / Omega * s;
-    const double z =
-        Omega_z > 0 ? x[2] * std::cos(Omega_z * t) + v[2] / Omega_z * std::sin(Omega_z * t) : x[2] + v[2] * t;
-    const double vz = Omega_z > 0 ? v[2] * std::cos(Omega_z * t) - x[2] * Omega_z * std::sin(Omega_z * t) : v[2];
-    const double w_then = w * c - v[0] / 2 * s;
-    return {{across, x[1] - 1.5 * Omega * guide * t + 4 / Omega * (w * s + v[0] / 2 * (c - 1)), z},
-            {v[0] * c + 2 * w * s, w_then - 1.5 * Omega * across, vz}};
-  }
-};
-
-/// A particle of a box as if it had never been wrapped: the cell that it is in has slid along y.
-Place on_its_path(const ParticleSystem<double>& s, Index i, double Omega) {
-  Vec3<double> x = s.unwrapped(i);
-  x[1] = s.positions()[i][1] - 1.5 * Omega * s.time() * s.box().edges()[0] * s.images().component(0)[i];
-  return {x, s.velocities()[i]};
-}
-
-/// Contacts within a step by a search that knows nothing of the engine's: the gap of every pair, through all nine
-/// images and by its closed form, is looked at in pieces of the step, and where it has a minimum there.
-class ByPairs {
- public:
-  ByPairs(const ParticleSystem<double>& s, const HardSpheres& law, double Omega)
-      : edges_(s.box().edges()), time_(s.time()), law_(law), Omega_(Omega) {
-    for (Index i = 0; i < s.size(); ++i) {
-      all_.push_back(on_its_path(s, i, Omega));
-      masses_.push_back(s.masses()[i]);
-      radii_.push_back(s.column<BodyRadius>()[i]);
-    }
-  }
-  int contacts() const { return contacts_; }
-  const std::vector<Place>& places() const { return all_; }
-
-  void step(double h) {
-    double left = h;
-    std::pair<std::size_t, std::size_t> last{0, 0};
-    while (true) {
-      double first = left;
-      std::pair<std::size_t, std::size_t> who{0, 0};
-      Vec3<double> offset;
-      for (std::size_t i = 0; i < all_.size(); ++i) {
-        for (std::size_t j = i + 1; j < all_.size(); ++j) {
-          for (const Vec3<double>& image : images(i, j)) {
-            const double t = root(image_of(j, image), i, radii_[i] + radii_[j], first, std::pair{i, j} == last);
-            if (t < first) first = t, who = {i, j}, offset = image;
-          }
-        }
-      }
-      const Place hit = who.second > 0 ? image_of(who.second, offset) : Place{};
-      const double touch = who.second > 0 ? first : left;
-      if (who.second > 0) collide(who.first, who.second, hit, touch);
-      for (std::size_t i = 0; i < all_.size(); ++i) {
-        if (who.second > 0 && (i == who.first || i == who.second)) continue;
-        all_[i] = all_[i].at(touch, Omega_, Omega_);
-      }
-      time_ += touch;
-      left -= touch;
-      last = who;
-      if (who.second == 0) return;
-    }
-  }
-
- private:
-  /// How far, in cells, the images of j that can be near i are away.
-  std::vector<Vec3<double>> images(std::size_t i, std::size_t j) const {
-    std::vector<Vec3<double>> all;
-    const double dx = all_[j].x[0] - all_[i].x[0], near = -std::nearbyint(dx / edges_[0]);
-    for (int a = -1; a <= 1; ++a) {
-      const double across = near + a, x = dx + across * edges_[0];
-      const double y = all_[j].x[1] - all_[i].x[1] - 1.5 * Omega_ * time_ * across * edges_[0];
-      const double along = -std::nearbyint(y / edges_[1]);
-      const double reach = radii_[i] + radii_[j] + 1;
-      for (int b = -1; b <= 1; ++b) {
-        if (std::abs(x) < reach && std::abs(y + (along + b) * edges_[1]) < reach)
-          all.emplace_back(across, along + b, 0);
-      }
-    }
-    return all;
-  }
-  Place image_of(std::size_t j, const Vec3<double>& image) const {
-    Place there = all_[j];
-    there.x[0] += image[0] * edges_[0];
-    there.x[1] += image[1] * edges_[1] - 1.5 * Omega_ * time_ * image[0] * edges_[0];
-    there.v[1] -= 1.5 * Omega_ * image[0] * edges_[0];
-    return there;
-  }
-  /// The difference of two epicycles is an epicycle.
-  double root(const Place& there, std::size_t i, double touch, double left, bool just_met) const {
-    const Place d{there.x - all_[i].x, there.v - all_[i].v};
-    const auto gap = [&](double t) { return d.at(t, Omega_, Omega_).x.norm() - touch; };
-    const auto closing = [&](double t) {
-      const Place then = d.at(t, Omega_, Omega_);
-      return then.x.dot(then.v);
-    };
-    constexpr int pieces = 12;
-    if (gap(0) > 2 * left + left * d.v.norm()) return left;
-    double from = 0;
-    if (!just_met && gap(0) <= 1e-13 && closing(0) < 0) return 0;
-    for (int k = 1; k <= pieces; ++k) {
-      const double to = left * k / pieces;
-      double low = from, high = to;
-      if (closing(from) < 0 && closing(to) > 0) {  // a minimum between
-        for (int n = 0; n < 60; ++n) (closing((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
-      }
-      if (closing(from) < 0 && gap(high) < 0) {
-        low = from;
-        for (int n = 0; n < 60; ++n) (gap((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
-        return high;
-      }
-      from = to;
-    }
-    return left;
-  }
-  void collide(std::size_t i, std::size_t j, const Place& image, double t) {
-    Place one = all_[i].at(t, Omega_, Omega_);
-    const Place there = image.at(t, Omega_, Omega_);
-    Place other = all_[j].at(t, Omega_, Omega_);
-    const Vec3<double> n = (there.x - one.x).normalized();
-    const double approach = -(there.v - one.v).dot(n);
-    const double gain = approach + law_.rebound(approach, Omega_ * (radii_[i] + radii_[j]) / 2000);
-    one.v -= masses_[j] / (masses_[i] + masses_[j]) * gain * n;
-    other.v += masses_[i] / (masses_[i] + masses_[j]) * gain * n;
-    all_[i] = one;
-    all_[j] = other;
-    ++contacts_;
-  }
-
-  Vec3<double> edges_;
-  double time_;
-  HardSpheres law_;
-  double Omega_;
-  std::vector<Place> all_;
-  std::vector<double> masses_, radii_;
-  int contacts_ = 0;
-};
 
 }  // namespace
 
 TEST_CASE("contacts of spheres are those of a search by pairs", "[integrators][hard_spheres]") {
-  // The whole state after each step, from the same state: a contact that is missed, or met twice, shows.
-  const HardSpheres law{.restitution = 0.7};
-  const auto s = test::patch({.count = 40, .thickness = 4, .speed = 2});
-  Composition<AnyHamiltonian<double>> integrator(sheet_of_spheres({}, law), schemes::verlet);
-  auto raw = s;
-  const double h = 0.1;
-  raw.clock() = Clock<double>::fixed(0, h);
-  integrator.bind(raw);
-  auto now = raw;
-  double worst = 0;
-  int contacts = 0;
-  for (int step = 0; step < 60; ++step) {
-    ByPairs truth(now, law, 1);
-    const double before = step > 0 ? total_contacts(now) : 0;
-    integrator.advance(raw, {.steps = 1});
-    integrator.settle(raw, now, {}, std::nullopt, true);
-    truth.step(h);
-    REQUIRE(truth.contacts() == static_cast<int>(total_contacts(now) - before));
-    contacts += truth.contacts();
-    for (Index i = 0; i < now.size(); ++i) {
-      Vec3<double> d = truth.places()[static_cast<std::size_t>(i)].x - on_its_path(now, i, 1).x;
-      d[1] -= s.box().edges()[1] * std::nearbyint(d[1] / s.box().edges()[1]);
-      worst = std::max(worst, d.cwiseAbs().maxCoeff());
-      worst = std::max(
-          worst,
-          (truth.places()[static_cast<std::size_t>(i)].v - Vec3<double>(now.velocities()[i])).cwiseAbs().maxCoeff());
-    }
-  }
-  INFO(contacts << " contacts");
-  CHECK(contacts > 100);
-  CHECK(worst <= 1e-10);
+  const SearchedRun run =
+      searched_run(test::patch({.count = 40, .thickness = 4, .speed = 2}), {.restitution = 0.7}, 0.1, 60);
+  INFO(run.contacts << " contacts");
+  CHECK(run.wrong_steps == 0);
+  CHECK(run.contacts > 100);
+  CHECK(run.worst <= 1e-10);
 }
 
 TEST_CASE("two spheres of a sheet meet where their epicycles say", "[integrators][hard_spheres]") {
