@@ -1,5 +1,6 @@
 #include "monitors/ring_monitors.hpp"
 
+#include "engine/force_sink.hpp"
 #include "engine/sphere_columns.hpp"
 #include "engine/sums.hpp"
 #include "monitors/series_report.hpp"
@@ -114,7 +115,14 @@ MonitorReport FillingFactor::report() const {
 void Viscosity::check() const {
   check_rate(Omega);
   check_constant_of_gravitation(G);
-  if (!(softening >= 0)) refuse_field("softening", softening, "is negative; 0 or a length above is expected");
+  if (softening && !(*softening >= 0))
+    refuse_field("softening", *softening, "is negative; 0 or a length above is expected");
+}
+
+void Viscosity::watch(const ForceClaims& gravity) {
+  if (!gravity.kepler) return;
+  if (!G) G = gravity.G;
+  if (!softening) softening = gravity.softening;
 }
 
 template <class Real> void Viscosity::check(const ParticleSystem<Real>& s) const {
@@ -180,7 +188,7 @@ template <class Real> void Viscosity::observe(const Snapshot<Real>& now) {
   const bool first = !looked_ || !(elapsed > 0);
   now_[0] = factor * static_cast<double>(flux);
   now_[1] = first ? std::numeric_limits<double>::quiet_NaN() : factor * (carried - carried_) / elapsed;
-  now_[2] = G ? factor * pulled_outwards(s, *Omega, *G, softening, now.time()) : 0;
+  now_[2] = G ? factor * pulled_outwards(s, *Omega, *G, softening.value_or(0), now.time()) : 0;
   looked_ = true;
   carried_ = carried;
   last_time_ = now.time();

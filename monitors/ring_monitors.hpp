@@ -12,6 +12,8 @@
 
 namespace noether {
 
+struct ForceClaims;
+
 /// Watches the velocities of particles about the shear of a sheet, all alike whatever their masses:
 ///
 ///     c_k^2 = <(u_k - <u_k>)^2>,   u = (v_x, v_y + 3 Omega x/2, v_z),   value^2 = c_x^2 + c_y^2 + c_z^2
@@ -104,12 +106,12 @@ class Viscosity {
  public:
   static constexpr bool needs_particles = true;
 
-  std::optional<double> Omega = {};  ///< of the sheet [1/time]
-  std::optional<double> G = {};      ///< [length^3/mass/time^2]; none: no gravitational part
-  double softening = 0;              ///< of gravity [length]
+  std::optional<double> Omega = {};      ///< of the sheet [1/time]
+  std::optional<double> G = {};          ///< [length^3/mass/time^2]; none: no gravitational part
+  std::optional<double> softening = {};  ///< of gravity [length]; none: 0
 
   Viscosity() = default;
-  explicit Viscosity(double rate, std::optional<double> constant = {}, double softened = 0)
+  explicit Viscosity(double rate, std::optional<double> constant = {}, std::optional<double> softened = {})
       : Omega(rate), G(constant), softening(softened) {}
 
   static constexpr auto describe() {
@@ -120,14 +122,17 @@ class Viscosity {
         quantities("value, local, collisional, gravitational [length^2/time]"),
         source("WisdomTremaine1988, Daisaka2001"),
         field<&Viscosity::Omega>("Omega", "1/time", "angular velocity; default: that of the shearing sheet"),
-        field<&Viscosity::G>("G", "length^3/mass/time^2", "of the scene's gravity; none: no gravitational part"),
-        field<&Viscosity::softening>("softening", "length", "of the scene's gravity"), state<&Viscosity::now_>("now"),
-        state<&Viscosity::looked_>("looked"), state<&Viscosity::carried_>("carried"),
+        field<&Viscosity::G>("G", "length^3/mass/time^2",
+                             "default: of the gravity that acts; without: no part by gravity"),
+        field<&Viscosity::softening>("softening", "length", "default: of the gravity that acts"),
+        state<&Viscosity::now_>("now"), state<&Viscosity::looked_>("looked"), state<&Viscosity::carried_>("carried"),
         state<&Viscosity::last_time_>("last_time"), state<&Viscosity::values_>("values"),
         state<&Viscosity::parts_>("parts"), state<&Viscosity::slope_unit_>("slope_unit"));
   }
   /// @throws Error  without an Omega, for an Omega or a G that is not above 0, or a negative softening
   void check() const;
+  /// Takes G and the softening from what attracts all pairs, where they are not given.
+  void watch(const ForceClaims& gravity);
   /// @throws Error  in open space, and without mass
   template <class Real> void check(const ParticleSystem<Real>& s) const;
 

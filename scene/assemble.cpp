@@ -263,6 +263,12 @@ Watched watched_of(const Scene& scene) {
     watched.symmetries = scene.system->symmetries;
     watched.momenta = scene.system->momenta;
   }
+  for (const SceneForce& term : scene.hamiltonian.terms()) {
+    const ForceClaims claims = term.force.claims();
+    if (!claims.kepler) continue;
+    watched.gravity = claims;
+    watched.gravity.G = claims.G.value_or(scene.units->G);
+  }
   watched.charges = {fields_among(forces_of(scene)).terms(), scene.hamiltonian.splitting.c};
   return watched;
 }

@@ -61,6 +61,8 @@ class SceneReader {
           read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles, scene_.warnings);
       read_hamiltonian(table(top, "hamiltonian"));
       context_.gravitates = scene_.hamiltonian.is_keplerian();
+      // The scene in a file has a constant even so: that of the units, which binds no monitor.
+      if (!context_.gravitates && scene_.hamiltonian.G == scene_.units->G) context_.G.reset();
       context_.gyration = first_gyration(scene_, start_time(table(top, "integrator")));
       if (const SceneValue* start = top.find("minimize")) {
         scene_.effective.put("minimize", read_minimize(context_, *start, scene_));
@@ -377,11 +379,7 @@ class SceneReader {
       if (type == "trajectory") watch.kind = SceneWatch::Kind::trajectory;
       if (type == "checkpoint") watch.kind = SceneWatch::Kind::checkpoint;
       for (const char* key : {"every", "steps", "times", "after"}) reader.find(key);
-      // What acts is the default of monitors, also where the scene leaves its constant to the units.
-      const bool of_units = context_.gravitates && !context_.G && table->find("G") == nullptr;
-      if (of_units) context_.G = SceneValue::of(scene_.units->G);
       if (kind != nullptr) watch.monitor = kind->read(reader);
-      if (of_units) context_.G.reset();
       if (kind == nullptr && type == "checkpoint") reader.find("wall");
       if (kind == nullptr && type == "trajectory") watch.sites = frames_have_sites(reader, effective);
       reader.finish();

@@ -113,13 +113,14 @@ struct SceneConstraint {
 };
 
 /// What monitors may ask of a run beside its particles: constraints, symmetries of its system, fields of charges, how
-/// the system shares its momentum with a field, and how small changes of its state go along.
+/// the system shares its momentum with a field, how small changes of its state go along, and the gravity that acts.
 struct Watched {
   ConstraintSet constraints;
   std::vector<Symmetry> symmetries;
   ChargeMotion charges;
   MomentumSharing momenta;  ///< empty where it has none
   TangentFlows<double> tangents = {};
+  ForceClaims gravity = {};  ///< of what attracts all pairs, with its G; not `kepler` where nothing does
 };
 
 /// A monitor as a scene asked for it.
@@ -511,6 +512,9 @@ class Parts {
   template <class M> static SceneMonitor read_monitor(TableReader& reader) {
     M monitor{};
     read_part(reader, monitor);
+    if constexpr (requires(const ForceClaims& gravity) { monitor.watch(gravity); }) {
+      if (!reader.has("G")) monitor.G.reset();  // a scene may have a constant though nothing attracts
+    }
     SceneMonitor made{std::string(part_name<M>()), SceneValue::table(), {}, {}};
     put_fields(reader, monitor, made.effective);
     made.make = [monitor](const Watched& of) {
@@ -519,6 +523,7 @@ class Parts {
       if constexpr (requires { watching.watch(of.symmetries); }) watching.watch(of.symmetries);
       if constexpr (requires { watching.watch(of.charges); }) watching.watch(of.charges);
       if constexpr (requires { watching.watch(of.momenta); }) watching.watch(of.momenta);
+      if constexpr (requires { watching.watch(of.gravity); }) watching.watch(of.gravity);
       if constexpr (requires { watching.watch(of.tangents); }) {
         if (of.tangents.make) watching.watch(of.tangents);
       }

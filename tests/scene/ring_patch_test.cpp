@@ -4,8 +4,11 @@
 #include "engine/simulation.hpp"
 #include "engine/sphere_columns.hpp"
 #include "integrators/shearing_sheet.hpp"
+#include "io/inspect.hpp"
+#include "scene/run.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/ring_spheres.hpp"
 
@@ -13,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -172,25 +176,78 @@ TEST_CASE("Omega is told once, in the Hamiltonian, and another one is refused", 
                     "'shearing_sheet'");
 }
 
+namespace {
+
+/// A patch of a few spheres and its viscosity, looked at in the two steps of a run.
+std::string watched_patch(const std::string& of_hamiltonian, const std::string& forces,
+                          const std::string& of_monitor = "") {
+  return "units = 'si'\n[particles]\ntype = 'ring_patch'\nsize = ['10 m', '8 m', '20 m']\nsmallest = '0.5 m'\n"
+         "density = '400 kg/m^3'\noptical_depth = 0.3\n[hamiltonian]\ntype = 'shearing_sheet'\nOmega = '1.5e-4 "
+         "1/s'\n" +
+         of_hamiltonian + forces +
+         "[integrator]\nmethod = 'verlet'\nstep = '100 s'\nsteps = 2\n[[every]]\ntype = 'trajectory'\nsteps = 1\n"
+         "[[every]]\ntype = 'viscosity'\nsteps = 1\n" +
+         of_monitor;
+}
+
+/// What a run leaves: its digest, the viscosity as run.h5 has it, and the scene in that file.
+struct StoredRun {
+  std::string digest, scene;
+  std::map<std::string, std::vector<double>> viscosity;
+  double by_gravity() const { return viscosity.at("gravitational").at(1); }
+};
+
+StoredRun stored_run(const std::string& text) {
+  const test::ScratchFolder folder;
+  const RunReport report =
+      run(read_scene(text, folder / "scene.toml"), {.out = folder / "out", .handle_signals = false});
+  REQUIRE(report.outcome.ok());
+  StoredRun stored{report.digest, io::info(folder / "out" / "run.h5").scene_toml, {}};
+  for (const io::MonitorSeries& one : io::read_monitors(folder / "out" / "run.h5")) {
+    for (const auto& [name, values] : one.quantities) stored.viscosity[name] = values.second;
+  }
+  stored.viscosity.at("value").erase(stored.viscosity.at("value").begin());  // not a number: before any contact
+  stored.viscosity.at("collisional").erase(stored.viscosity.at("collisional").begin());
+  return stored;
+}
+
+const std::string pull = "[[hamiltonian.force]]\ntype = 'gravity'\n",
+                  no_pull = "[[hamiltonian.force]]\ntype = 'hard_spheres'\nrestitution = 0.5\n",
+                  constant = "G = '6.6743e-11 m^3/kg/s^2'\n";
+
+}  // namespace
+
 TEST_CASE("the viscosity of a patch has the part of the gravity that acts", "[ring_patch]") {
-  const auto gravitational = [](const std::string& G) {
-    const std::string text =
-        "units = 'si'\n[particles]\ntype = 'ring_patch'\nsize = ['10 m', '8 m', '20 m']\nsmallest = '0.5 m'\n"
-        "density = '400 kg/m^3'\noptical_depth = 0.3\n[hamiltonian]\ntype = 'shearing_sheet'\nOmega = '1.5e-4 1/s'\n" +
-        G +
-        "[[hamiltonian.force]]\ntype = 'gravity'\n[integrator]\nmethod = 'verlet'\nstep = '100 s'\nsteps = 2\n"
-        "[[every]]\ntype = 'viscosity'\nsteps = 1\n";
-    Simulation<double> sim = assemble(read_scene(text, "scene.toml"));
-    REQUIRE(sim.run(2).ok());
-    double found = 0;
-    sim.for_each_monitor([&](const std::string& /*name*/, const AnyMonitor<double>& monitor) {
-      for (const Series& one : monitor.series()) found = one.name == "gravitational" ? one.values[0] : found;
-    });
-    return found;
-  };
-  const double of_units = gravitational(""), given = gravitational("G = '6.6743e-11 m^3/kg/s^2'\n");
+  // The figure of a monitor that is told everything is checked in tests/engine/ring_monitors_test.cpp.
+  const double given = stored_run(watched_patch(constant, pull, constant)).by_gravity();
   CHECK(given != 0);
-  CHECK(std::abs(of_units / given - 1) <= 1e-9);
+  CHECK(stored_run(watched_patch(constant, pull)).by_gravity() == given);
+  CHECK(std::abs(stored_run(watched_patch("", pull)).by_gravity() / given - 1) <= 1e-9);  // G of the units
+
+  const std::string soft = "softening = '2 m'\n";
+  const double softened = stored_run(watched_patch("", pull + soft, constant + soft)).by_gravity();
+  CHECK(std::abs(softened / given - 1) > 0.01);
+  CHECK(std::abs(stored_run(watched_patch("", pull + soft)).by_gravity() / softened - 1) <= 1e-9);
+
+  // A constant alone attracts nothing; one of the monitor's own says what gravity would do.
+  CHECK(stored_run(watched_patch("", no_pull)).by_gravity() == 0);
+  CHECK(stored_run(watched_patch(constant, no_pull)).by_gravity() == 0);
+  CHECK(stored_run(watched_patch("G = '1e-11 m^3/kg/s^2'\n", no_pull)).by_gravity() == 0);
+  CHECK(std::abs(stored_run(watched_patch("", no_pull, constant)).by_gravity() / given - 1) <= 0.05);
+}
+
+TEST_CASE("the scene that a file stores has the viscosity of its run", "[ring_patch]") {
+  const std::string other = "G = '5e-11 m^3/kg/s^2'\n";
+  for (const std::string& text :
+       {watched_patch("", no_pull), watched_patch(constant, no_pull), watched_patch("", no_pull, other),
+        watched_patch("", pull), watched_patch(other, pull), watched_patch("", pull + "softening = '2 m'\n")}) {
+    const StoredRun first = stored_run(text), again = stored_run(first.scene);
+    CAPTURE(text, first.scene);
+    REQUIRE(first.viscosity.size() == 4);
+    CHECK(again.digest == first.digest);
+    CHECK(again.viscosity == first.viscosity);
+    CHECK(again.scene == first.scene);
+  }
 }
 
 }  // namespace noether
