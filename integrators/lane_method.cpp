@@ -8,7 +8,8 @@ namespace noether {
 
 std::unique_ptr<LaneMethod> method_in_lanes(const MethodChoice& choice) {
   if (choice.info->is_adaptive(choice.options)) return nullptr;
-  for (const auto& family : {lane_methods::runge_kutta, lane_methods::nystrom, lane_methods::collocation}) {
+  for (const auto& family :
+       {lane_methods::runge_kutta, lane_methods::nystrom, lane_methods::collocation, lane_methods::multistep}) {
     if (auto made = family(choice)) return made;
   }
   return nullptr;

@@ -42,6 +42,7 @@ namespace lane_methods {
 std::unique_ptr<LaneMethod> runge_kutta(const MethodChoice& choice);
 std::unique_ptr<LaneMethod> nystrom(const MethodChoice& choice);
 std::unique_ptr<LaneMethod> collocation(const MethodChoice& choice);
+std::unique_ptr<LaneMethod> multistep(const MethodChoice& choice);
 }  // namespace lane_methods
 
 }  // namespace noether

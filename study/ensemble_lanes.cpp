@@ -4,6 +4,7 @@
 #include "engine/schedule.hpp"
 #include "forces/gr_potential.hpp"
 #include "forces/speed_of_light.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/force_motion.hpp"
 #include "integrators/lane_method.hpp"
@@ -59,11 +60,24 @@ bool is_gravity_in_stages(const Scene& scene) {
   return gravity.G && gravity.beside.terms().empty();
 }
 
+/// Why there is none of a method with steps of one length.
+std::string why_method_has_no_lanes(const MethodInfo& info) {
+  const auto is_of = [&](std::span<const MethodInfo> family) {
+    return std::any_of(family.begin(), family.end(), [&](const MethodInfo& one) { return one.name == info.name; });
+  };
+  if (is_of(methods::encke_list()) || is_of(methods::wide_gauss_list()))
+    return fmt::format("the stages of '{}' fill the lanes of one system", info.name);
+  if (is_of(methods::hbvm_list())) return fmt::format("the nodes of '{}' fill the lanes of one system", info.name);
+  if (info.takes(*linear_solver))
+    return fmt::format("the method '{}' solves linear systems, which have no lanes", info.name);
+  return fmt::format("the method '{}' has no lanes", info.name);
+}
+
 std::string why_alone_by_method(const Scene& scene) {
   const SceneIntegrator& integrator = scene.integrator;
   if (!integrator.classical) return "";
   if (scene.integrator.adaptive()) return fmt::format("the method '{}' chooses its steps", integrator.method);
-  if (!method_in_lanes(*integrator.classical)) return fmt::format("the method '{}' has no lanes", integrator.method);
+  if (!method_in_lanes(*integrator.classical)) return why_method_has_no_lanes(*integrator.classical->info);
   return "";
 }
 

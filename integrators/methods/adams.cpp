@@ -11,8 +11,6 @@ namespace noether {
 
 namespace {
 
-/// Iterations after which the implicit formula counts as not solved.
-
 /// Order of the explicit formula: the implicit one predicts from the rates it keeps anyway.
 int explicit_order(AdamsKind kind, int order) { return kind == AdamsKind::moulton ? std::max(order - 1, 1) : order; }
 

@@ -35,21 +35,25 @@ template <class Real> class Adams final : public Method<Real> {
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 
+  AdamsKind kind() const { return kind_; }
   /// Weights of f_0, f_-1, ... of the explicit formula, and of f_1, f_0, ... of the implicit one.
   const std::vector<Real>& explicit_weights() const { return explicit_; }
   const std::vector<Real>& implicit_weights() const { return implicit_; }
+  /// Why a step of h from time t has none: what fixed-point iteration still changed, relative to the size of the
+  /// solution, and by what rate that shrank.
+  Failure not_solved(double t, double h, double change, int iterations, double rate) const;
+  static constexpr int parts_of_start = 8;  ///< of each of the first steps
 
  private:
   void start(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h);
   std::optional<Failure> iterate(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h);
   double correct(const Vector<Real>& y, double h);
-  Failure not_solved(double t, double h, double change, int iterations, double rate) const;
 
   std::string_view name_;
   AdamsKind kind_;
   int order_;
   std::vector<Real> explicit_, implicit_;
-  Starter<Real> starter_{8};
+  Starter<Real> starter_{parts_of_start};
   History<Real> rates_;
   bool have_rate_ = false;  ///< the newest rate is the one at the present point
   double h_ = 0;

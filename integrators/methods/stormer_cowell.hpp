@@ -31,8 +31,11 @@ template <class Real> class StormerCowell final : public Method<Real> {
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 
-  /// Weights of the present and earlier accelerations in the next position.
+  /// Weights of the present and earlier accelerations in the next position, in the present one, and in its velocity.
   const std::vector<Real>& position_weights() const { return next_position_; }
+  const std::vector<Real>& present_position_weights() const { return position_; }
+  const std::vector<Real>& velocity_weights() const { return velocity_; }
+  static constexpr int parts_of_start = 16;  ///< of each of the first steps
 
  private:
   void set_up_sums(double h);
@@ -41,7 +44,7 @@ template <class Real> class StormerCowell final : public Method<Real> {
   std::string_view name_;
   int order_;
   std::vector<Real> next_position_, position_, velocity_;  ///< weights of a_n, a_(n-1), ...
-  Starter<Real> starter_{16};
+  Starter<Real> starter_{parts_of_start};
   History<Real> pulls_;                 ///< h^2 a, the newest is a_n
   CompensatedVector<Real> sum_, sums_;  ///< D_n and S_n
   CompensatedVector<Real> y_;           ///< during the start

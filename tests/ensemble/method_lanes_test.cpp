@@ -1,9 +1,11 @@
 // Classical methods of fixed steps in lanes: the bits of a member alone, whoever stands beside it, and the run of the
 // scene to rounding.
 
+#include "forces/gravity.hpp"
 #include "integrators/all_methods.hpp"
 #include "integrators/lane_method.hpp"
 #include "tests/ensemble/support.hpp"
+#include "tests/support/planets.hpp"
 
 #include <cmath>
 #include <set>
@@ -68,6 +70,14 @@ TEST_CASE("collocation in lanes has the bits of each member alone, however many 
   check_bits(gravity + relativity, "gauss_8");
 }
 
+TEST_CASE("multistep methods in lanes have the bits of each member alone", "[ensemble][lanes]") {
+  // In encounters, where iterations differ in number, or do not converge and end a member.
+  check_bits(gravity + relativity, "adams_bashforth_4");
+  check_bits(gravity, "adams_moulton_5");
+  check_bits(gravity + oblate, "adams_pece");
+  check_bits(gravity + oblate, "stormer_cowell_13");
+}
+
 TEST_CASE("classical methods in lanes are the runs of their scenes to rounding", "[ensemble][lanes]") {
   const ScratchFolder folder;
   const auto of = [&](const std::string& forces, const std::string& method) {
@@ -87,6 +97,10 @@ TEST_CASE("classical methods in lanes are the runs of their scenes to rounding",
   for (const char* method : {"gauss_8", "gauss_radau_15"}) {
     CHECK(of(gravity + relativity, method) <= 2e-13);
   }
+  for (const char* method : {"adams_bashforth_4", "adams_moulton_1", "adams_moulton_6", "adams_pece"}) {
+    CHECK(of(gravity + relativity, method) <= 2e-13);
+  }
+  CHECK(of(gravity + oblate, "stormer_cowell_12") <= 2e-12);
   CHECK(of(gravity + oblate, "dprkn_12") <= 2e-13);
   CHECK(of(gravity + relativity, "dop853") <= 2e-13);
   CHECK(of(gravity + relativity, "gauss_4") <= 2e-13);
@@ -116,9 +130,71 @@ TEST_CASE("a step in lanes is the one of the method, whose order it has", "[ense
   CHECK(std::abs(order_of("euler", 40) - 1) < 0.1);
   CHECK(std::abs(order_of("heun", 10) - 2) < 0.1);
   CHECK(std::abs(order_of("rk4", 10) - 4) < 0.1);
+  CHECK(std::abs(order_of("adams_bashforth_1", 40) - 1) < 0.1);
+  CHECK(std::abs(order_of("adams_bashforth_3", 80) - 3) < 0.1);
+  CHECK(std::abs(order_of("adams_moulton_4", 40) - 4) < 0.1);
+  CHECK(std::abs(order_of("adams_pece", 40) - 4) < 0.1);
   CHECK(std::abs(order_of("implicit_midpoint", 10) - 2) < 0.1);
   CHECK(std::abs(order_of("gauss_2", 10) - 4) < 0.1);
   CHECK(std::abs(order_of("gauss_3", 4) - 6) < 0.2);
+}
+
+TEST_CASE("methods with a past go on in lanes from what is kept, and in a copy, bit for bit", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  write_text(folder / "scene.toml", stepped(gravity, "rk4"));
+  const ParticleSystem<double> like = load_scene(folder / "scene.toml").particles;
+  constexpr std::int64_t all = 40;
+  for (const char* name : {"adams_bashforth_4", "adams_moulton_6", "adams_pece", "stormer_cowell_12"}) {
+    const MethodInfo* const info = methods::find(name);
+    const MethodChoice choice = method(name, {.adaptive = info->adaptive ? std::optional(false) : std::nullopt});
+    const auto begun = [&] {
+      auto run = run_in_lanes(method_in_lanes(choice), ForceField<double>().add(Gravity{}), like,
+                              Clock<double>::fixed(0, 0.1));
+      for (std::size_t lane = 0; lane < LaneRun::lanes; ++lane) {
+        ParticleSystem<double> s = like;
+        s.positions().all() *= 1 + 0.01 * static_cast<double>(lane);
+        run->put(lane, s);
+      }
+      return run;
+    };
+    const auto at_end = [&](const LaneRun& run, std::size_t lane) {
+      ParticleSystem<double> s = like;
+      run.take(lane, s);
+      return s;
+    };
+    const auto whole = begun();
+    REQUIRE(whole->advance(all));
+    // Before the start, in it, at its end (after order - 1 steps) and behind it.
+    for (const std::int64_t kept : {0, 1, 3, 5, 11, 12, 20}) {
+      CAPTURE(name, kept);
+      const auto cut = begun(), copied = begun();
+      REQUIRE(cut->advance(kept));
+      cut->keep();
+      REQUIRE(cut->advance(15));
+      cut->go_back();
+      REQUIRE(cut->advance(all - kept));
+      REQUIRE(copied->advance(kept));
+      copied->copy_lane(2, 5);
+      REQUIRE(copied->advance(all - kept));
+      for (std::size_t lane = 0; lane < LaneRun::lanes; ++lane) {
+        CHECK(same_bits(at_end(*cut, lane), at_end(*whole, lane)));
+        CHECK(same_bits(at_end(*copied, lane), at_end(*whole, lane == 5 ? 2 : lane)));
+      }
+      CHECK_FALSE(same_bits(at_end(*whole, 2), at_end(*whole, 5)));
+    }
+  }
+}
+
+TEST_CASE("sums of Stoermer and Cowell's method carry their rounding errors in lanes", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  // 10^4 radians of x = cos(omega t), by the summed formula of order 12.
+  write_text(folder / "scene.toml", ball("stormer_cowell_12", 0.0625, 160000));
+  const EnsembleScene scene(folder / "scene.toml", plan_of({"particles.body.ball.mass=1:4:2"}), {}, true,
+                            standard_parts());
+  REQUIRE(why_alone(load_scene(folder / "scene.toml")).empty());
+  const std::vector<io::EnsembleRow> rows = rows_together(scene, {0, 1});
+  CHECK(std::abs(values_of(scene, rows[0], "position")[0] - std::cos(10000.0)) < 1e-11);
+  CHECK(std::abs(values_of(scene, rows[1], "position")[0] - std::cos(5000.0)) < 1e-11);
 }
 
 TEST_CASE("a member in lanes whose sweeps do not converge goes on by Newton's iteration", "[ensemble][lanes]") {
@@ -153,6 +229,24 @@ TEST_CASE("members that fail under methods in lanes end as they do alone", "[ens
   CHECK(diverged == 2);  // h omega above 2.83: masses 1 and 8
 }
 
+TEST_CASE("members whose implicit formula is not solved in lanes end as they do alone", "[ensemble][lanes]") {
+  const ScratchFolder folder;
+  // Iteration contracts by h omega / 2: 4, 1.1, 0.8, 0.66 and less.
+  write_text(folder / "scene.toml", ball("adams_moulton_2", 8, 20));
+  const EnsembleScene scene(folder / "scene.toml", plan_of({"particles.body.ball.mass=1:85:8"}), {}, true,
+                            standard_parts());
+  const std::vector<io::EnsembleRow> rows = rows_together(scene, {0, 1, 2, 3, 4, 5, 6, 7});
+  for (std::int64_t k = 0; k < 8; ++k) {
+    CAPTURE(k);
+    const auto alone = run_members(scene, {&k, 1}, false, nullptr);
+    const io::EnsembleRow& here = rows[static_cast<std::size_t>(k)];
+    CHECK(here.outcome == alone[0].row->outcome);
+    CHECK(here.step == alone[0].row->step);
+    CHECK(rows_together(scene, {k})[0].bytes() == here.bytes());
+    CHECK((here.outcome == static_cast<std::int64_t>(Outcome::Kind::solver_failure)) == (k < 2));
+  }
+}
+
 TEST_CASE("every method of a family that has lanes has them", "[ensemble][lanes]") {
   std::set<std::string> in_lanes;
   for (const MethodInfo* info : methods::all()) {
@@ -163,7 +257,9 @@ TEST_CASE("every method of a family that has lanes has them", "[ensemble][lanes]
   for (const MethodInfo& info : methods::runge_kutta_list()) CHECK(in_lanes.contains(std::string(info.name)));
   for (const MethodInfo& info : methods::nystrom_list()) CHECK(in_lanes.contains(std::string(info.name)));
   CHECK_FALSE(method_in_lanes(method("gauss_8")));  // steps of its own choice
-  CHECK_FALSE(method_in_lanes(method("adams_bashforth_2")));
+  for (const MethodInfo& info : methods::multistep_list()) CHECK(in_lanes.contains(std::string(info.name)));
+  CHECK_FALSE(method_in_lanes(method("adams_pece")));
+  CHECK_FALSE(method_in_lanes(method("bdf_2")));
 }
 
 TEST_CASE("methods that go one by one say why", "[ensemble][lanes]") {
@@ -176,7 +272,12 @@ TEST_CASE("methods that go one by one say why", "[ensemble][lanes]") {
   CHECK(why(replaced(planets(gravity, "dop853"), "step = 0.1\nsteps = 200", "until = 20")) ==
         "the method 'dop853' chooses its steps");
   CHECK(why(stepped("type = \"wisdom_holman\"", "rk4")) == "the Hamiltonian 'wisdom_holman' has no lanes");
-  CHECK(why(stepped(gravity, "adams_bashforth_2")) == "the method 'adams_bashforth_2' has no lanes");
+  CHECK(why(stepped(gravity, "adams_bashforth_2")).empty());
+  CHECK(why(stepped(gravity, "galerkin_gauss_2")) == "the method 'galerkin_gauss_2' has no lanes");
+  CHECK(why(stepped(gravity, "bdf_2")) == "the method 'bdf_2' solves linear systems, which have no lanes");
+  CHECK(why(stepped(gravity, "wide_gauss_8")) == "the stages of 'wide_gauss_8' fill the lanes of one system");
+  CHECK(why(stepped(gravity, "encke_gauss_8")) == "the stages of 'encke_gauss_8' fill the lanes of one system");
+  CHECK(why(stepped(gravity, "hbvm_3")) == "the nodes of 'hbvm_3' fill the lanes of one system");
   CHECK(why(stepped(gravity, "gauss_7")).empty());
   CHECK(why(stepped(gravity, "gauss_radau_15")) ==
         "the stages of 'gauss_radau_15' fill the lanes where gravity acts alone");
