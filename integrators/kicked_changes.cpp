@@ -4,19 +4,35 @@
 
 namespace noether::detail {
 
-LaneSlopes::LaneSlopes(const ForceField<double>& forces, const ParticleSystem<double>& like)
-    : slopes_(forces, like), x_(like.size()), u_(like.size()), a_(like.size()) {}
+namespace {
 
-const VectorColumn<Pack>& LaneSlopes::sum(char letter, const ParticleSystem<Pack>& s, const VectorColumn<Pack>& u) {
+void take_lane(std::size_t lane, const VectorColumn<Pack>& from, VectorColumn<double>& to) {
+  for (int c = 0; c < 3; ++c) {
+    for (Index i = 0; i < from.size(); ++i) to.component(c)[i] = from.component(c)[i].lane[lane];
+  }
+}
+
+}  // namespace
+
+LaneSlopes::LaneSlopes(const ForceField<double>& forces, const ParticleSystem<double>& like, bool velocities)
+    : slopes_(forces, like, velocities),
+      x_(like.size()),
+      u_(like.size()),
+      v_(like.size()),
+      w_(like.size()),
+      a_(like.size()) {}
+
+const VectorColumn<Pack>& LaneSlopes::sum(char letter, const ParticleSystem<Pack>& s, const VectorColumn<Pack>& u,
+                                          const VectorColumn<Pack>* w) {
   for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {
-    for (int c = 0; c < 3; ++c) {
-      for (Index i = 0; i < s.size(); ++i) {
-        x_.component(c)[i] = s.positions().component(c)[i].lane[lane];
-        u_.component(c)[i] = u.component(c)[i].lane[lane];
-      }
+    take_lane(lane, s.positions(), x_);
+    take_lane(lane, u, u_);
+    if (w != nullptr) {
+      take_lane(lane, s.velocities(), v_);
+      take_lane(lane, *w, w_);
     }
     slopes_.set_masses([&](Index i) { return s.masses()[i].lane[lane]; });
-    const auto& a = slopes_.sum(letter, s.time().lane[0], x_, u_);
+    const auto& a = slopes_.sum(letter, s.time().lane[0], x_, u_, w != nullptr ? &v_ : nullptr, &w_);
     for (int c = 0; c < 3; ++c) {
       for (Index i = 0; i < s.size(); ++i) a_.component(c)[i].lane[lane] = a.component(c)[i].slope[0];
     }
@@ -24,8 +40,8 @@ const VectorColumn<Pack>& LaneSlopes::sum(char letter, const ParticleSystem<Pack
   return a_;
 }
 
-KickedChanges::KickedChanges(const ForceField<double>& forces, const ParticleSystem<double>& like)
-    : others_(others_of(forces), like) {
+KickedChanges::KickedChanges(const ForceField<double>& forces, const ParticleSystem<double>& like, bool velocities)
+    : others_(others_of(forces), like, velocities) {
   for (const AnyForce<double>& force : forces.terms()) {
     if (const Gravity* gravity = force.as<Gravity>())
       gravity_.push_back({gravity->constant(like), gravity->softening, force.claims().kicks});
@@ -40,10 +56,10 @@ ForceField<double> KickedChanges::others_of(const ForceField<double>& forces) {
   return others;
 }
 
-void KickedChanges::sum(char letter, const ParticleSystem<Pack>& s, const VectorColumn<Pack>& u,
-                        VectorColumn<Pack>& a) {
+void KickedChanges::sum(char letter, const ParticleSystem<Pack>& s, const VectorColumn<Pack>& u, VectorColumn<Pack>& a,
+                        const VectorColumn<Pack>* w) {
   if (others_.any()) {
-    a.assign(others_.sum(letter, s, u));
+    a.assign(others_.sum(letter, s, u, w));
   } else {
     a.set_zero();
   }

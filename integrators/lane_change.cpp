@@ -2,7 +2,9 @@
 
 #include "integrators/particle_vector.hpp"
 #include "numbers/error.hpp"
+#include "numbers/pack.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace noether {
@@ -41,6 +43,49 @@ void LaneChange::go_back() {
   growths_.resize(kept_.growths);
   since_ = seen_step_ = kept_.since;
   square_ = seen_square_ = kept_.square;
+}
+
+void FollowedChanges::add(std::size_t lane, std::size_t change, std::shared_ptr<LaneChange> by) {
+  const auto later = [&](const Followed& one) { return one.change > change; };
+  followed_.insert(std::find_if(followed_.begin(), followed_.end(), later), {lane, change, std::move(by)});
+}
+
+void FollowedChanges::forget(std::size_t lane) {
+  std::erase_if(followed_, [&](const Followed& one) { return one.lane == lane; });
+}
+
+std::int64_t FollowedChanges::stride(std::int64_t step, std::int64_t most) const {
+  for (const Followed& one : followed_) most = std::min(most, one.by->next(step));
+  return most;
+}
+
+void FollowedChanges::measure(std::int64_t step, bool due, const std::function<void(std::size_t, double*)>& squares,
+                              const std::function<void(std::size_t, std::size_t, double)>& scale) {
+  constexpr std::size_t none = static_cast<std::size_t>(-1);
+  alignas(64) double of_lanes[2 * Pack::lanes];
+  std::size_t measured = none;
+  for (const Followed& one : followed_) {
+    if (due && one.by->next(step) > 0) continue;
+    if (one.change != measured) squares(one.change, of_lanes);
+    measured = one.change;
+    const double x2 = of_lanes[one.lane], v2 = of_lanes[one.lane + Pack::lanes];
+    if (!due) {
+      one.by->seen(step, x2, v2);
+      continue;
+    }
+    one.by->measured(step, x2, v2);
+    const double factor = one.by->factor();
+    if (factor == 1) continue;
+    scale(one.lane, one.change, factor);
+    one.by->scaled(factor);
+  }
+}
+
+void FollowedChanges::keep() {
+  for (const Followed& one : followed_) one.by->keep();
+}
+void FollowedChanges::go_back() {
+  for (const Followed& one : followed_) one.by->go_back();
 }
 
 namespace {

@@ -3,7 +3,9 @@
 
 #include "engine/tangent_flow.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -53,6 +55,31 @@ class LaneChange {
   std::vector<double> start_;
   std::vector<std::pair<std::int64_t, double>> growths_;
   Kept kept_;
+};
+
+/// The changes of a run in lanes that somebody follows.
+class FollowedChanges {
+ public:
+  void add(std::size_t lane, std::size_t change, std::shared_ptr<LaneChange> by);
+  /// Nobody looks at those of a lane any more.
+  void forget(std::size_t lane);
+  /// Steps from here to the first one at which a change is to be measured, at most so many.
+  std::int64_t stride(std::int64_t step, std::int64_t most) const;
+  /// Measures changes.
+  /// @param due  only those that are to be measured at this step; else all, which may be looked at
+  /// @param squares  takes which change, and gives |dx|^2 and |dv|^2 in all lanes, shape (2, 8)
+  /// @param scale  takes lane, change, and the factor by which it is to be made longer
+  void measure(std::int64_t step, bool due, const std::function<void(std::size_t, double*)>& squares,
+               const std::function<void(std::size_t, std::size_t, double)>& scale);
+  void keep();
+  void go_back();
+
+ private:
+  struct Followed {
+    std::size_t lane, change;
+    std::shared_ptr<LaneChange> by;
+  };
+  std::vector<Followed> followed_;  ///< by change: each is measured in all lanes at once
 };
 
 /// Such a change as the tangent flow of a monitor, which makes no steps of its own.

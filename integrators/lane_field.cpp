@@ -34,14 +34,41 @@ void LaneField::go_back() {
   failure_.reset();
 }
 
-void LaneField::accelerations(double t, const double* q, const double* v, double* a) {
-  const auto all = static_cast<std::size_t>(size());
+void LaneField::carry(std::size_t changes) {
+  by_forces_.emplace(forces_.forces(), one_, velocity_dependent_);
+  changes_ = changes;
+  u_ = w_ = VectorColumn<Pack>(packs_.size());
+}
+
+void LaneField::go_to(double t, const double* q, const double* v) {
+  const auto all = static_cast<std::size_t>(part());
   copy_packs(q, numbers_of(packs_.positions()), all);
   if (velocity_dependent_) copy_packs(v, numbers_of(packs_.velocities()), all);
   packs_.clock().set_stage_offset(Pack(t));
+}
+
+void LaneField::accelerations(double t, const double* q, const double* v, double* a) {
+  of_systems(t, q, v, a);
+  const auto next = lanes * static_cast<std::size_t>(part());
+  for (std::size_t at = next; at <= changes_ * next; at += next) {
+    of_change(t, q, v, q + at, velocity_dependent_ ? v + at : nullptr, a + at);
+  }
+}
+
+void LaneField::of_systems(double t, const double* q, const double* v, double* a) {
+  go_to(t, q, v);
   const std::optional<Failure> failure = forces_.sum(0, packs_, a_);
   if (failure && !failure_) failure_ = failure;
-  copy_packs(numbers_of(a_), a, all);
+  copy_packs(numbers_of(a_), a, static_cast<std::size_t>(part()));
+}
+
+void LaneField::of_change(double t, const double* q, const double* v, const double* dq, const double* dv, double* da) {
+  const auto all = static_cast<std::size_t>(part());
+  go_to(t, q, v);
+  copy_packs(dq, numbers_of(u_), all);
+  if (velocity_dependent_) copy_packs(dv, numbers_of(w_), all);
+  by_forces_->sum(0, packs_, u_, a_, velocity_dependent_ ? &w_ : nullptr);
+  copy_packs(numbers_of(a_), da, all);
 }
 
 const ParticleSystem<double>& LaneField::particles(std::size_t lane) {

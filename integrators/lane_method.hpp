@@ -11,16 +11,18 @@
 
 namespace noether {
 
-/// A method as `Method`, of steps of one length, for q'' = a(t, q, v) of eight systems side by side: y = (q, v), shape
-/// (2 n, 8).
+/// A method as `Method`, of steps of one length, for q'' = a(t, q, v) of eight systems side by side, and of the small
+/// changes that its field carries: y = (q, v), shape (2 n, 8), n the size of the field.
 ///
 /// No lane takes anything from another one. Where lanes need different numbers of iterations, those that are done wait,
-/// and what they hold stays.
+/// and what they hold stays. A system has the same bits with changes beside it and without.
 class LaneMethod {
  public:
   virtual ~LaneMethod() = default;
   /// What it remembers from step to step beside y, of shapes (., 8): sized by `begin`.
   virtual std::vector<LaneNumbers*> memory() { return {}; }
+  /// What it remembers of a change of one lane becomes longer by a power of 2, as the change does.
+  virtual void scale_change(std::size_t /*lane*/, std::size_t /*change*/, double /*factor*/) {}
   /// Before the first step, of length h, from y(t).
   virtual void begin(LaneField& f, double t, double h, const LaneNumbers& y) = 0;
   /// Goes from y(t) to y(t + h) in place, h always that of `begin`.

@@ -285,10 +285,6 @@ struct SplittingLanes::Walk {
     word.bind(at);
     settled = kept = at;
   }
-  struct Followed {
-    std::size_t lane, change;
-    std::shared_ptr<LaneChange> by;
-  };
   /// Works out what completes a copy: where time does not matter, the same after every step.
   void look_ahead() {
     LaneLetters& letters = word.hamiltonian();
@@ -303,7 +299,7 @@ struct SplittingLanes::Walk {
 
   Composition<LaneLetters> word;
   ParticleSystem<double> at, settled, kept;  ///< of which only clock and phase mean anything
-  std::vector<Followed> followed;
+  FollowedChanges followed;
   std::vector<LaneFlow> ahead;  ///< what completes a copy
   bool timed, known = false;    ///< whether flows depend on time; whether `ahead` is of a step that left one pending
 };
@@ -319,18 +315,15 @@ std::int64_t SplittingLanes::step() const { return walk_->at.clock().step(); }
 
 void SplittingLanes::follow(std::size_t lane, std::size_t change, std::shared_ptr<LaneChange> by) {
   systems_->put_change(lane, change, by->start().data());
-  walk_->followed.push_back({lane, change, std::move(by)});
+  walk_->followed.add(lane, change, std::move(by));
 }
 
-void SplittingLanes::forget(std::size_t lane) {
-  std::erase_if(walk_->followed, [&](const Walk::Followed& one) { return one.lane == lane; });
-}
+void SplittingLanes::forget(std::size_t lane) { walk_->followed.forget(lane); }
 
 bool SplittingLanes::advance(std::int64_t steps) {
   const std::int64_t until = step() + steps;
   while (step() < until) {
-    std::int64_t stride = until - step();
-    for (const Walk::Followed& one : walk_->followed) stride = std::min(stride, one.by->next(step()));
+    const std::int64_t stride = walk_->followed.stride(step(), until - step());
     if (walk_->word.advance(walk_->at, {.steps = stride}).failure != nullptr) return false;
     measure(true);
   }
@@ -339,25 +332,15 @@ bool SplittingLanes::advance(std::int64_t steps) {
 
 /// @param due  only changes that are to be measured at this step; else those that may be looked at
 void SplittingLanes::measure(bool due) {
-  constexpr std::size_t none = static_cast<std::size_t>(-1);
-  alignas(64) double squares[2 * SystemLanes::lanes];
-  std::size_t measured = none;
-  for (const Walk::Followed& one : walk_->followed) {
-    if (due && one.by->next(step()) > 0) continue;
-    if (measured == none) walk_->look_ahead();
-    if (one.change != measured) systems_->measure(walk_->ahead, one.change, squares);
-    measured = one.change;
-    const double x2 = squares[one.lane], v2 = squares[one.lane + SystemLanes::lanes];
-    if (!due) {
-      one.by->seen(step(), x2, v2);
-      continue;
-    }
-    one.by->measured(step(), x2, v2);
-    const double factor = one.by->factor();
-    if (factor == 1) continue;
-    systems_->scale_change(one.lane, one.change, factor);
-    one.by->scaled(factor);
-  }
+  bool looked = false;
+  walk_->followed.measure(
+      step(), due,
+      [&](std::size_t change, double* squares) {
+        if (!looked) walk_->look_ahead();
+        looked = true;
+        systems_->measure(walk_->ahead, change, squares);
+      },
+      [&](std::size_t lane, std::size_t change, double factor) { systems_->scale_change(lane, change, factor); });
 }
 
 void SplittingLanes::settle() {
@@ -379,13 +362,13 @@ void SplittingLanes::take(std::size_t lane, ParticleSystem<double>& s) const {
 void SplittingLanes::keep() {
   systems_->keep();
   walk_->kept.assign_state(walk_->at);
-  for (const Walk::Followed& one : walk_->followed) one.by->keep();
+  walk_->followed.keep();
 }
 
 void SplittingLanes::go_back() {
   systems_->go_back();
   walk_->at.assign_state(walk_->kept);
-  for (const Walk::Followed& one : walk_->followed) one.by->go_back();
+  walk_->followed.go_back();
 }
 
 }  // namespace noether

@@ -16,12 +16,12 @@ namespace detail {
 
 namespace {
 
-template <class Real> void check_slopes(const ForceField<Real>& forces) {
+template <class Real> void check_slopes(const ForceField<Real>& forces, bool velocities) {
   for (const AnyForce<Real>& force : forces.terms()) {
     if (!force.has_derivative()) {
       throw Error(fmt::format("the force '{}' is written for doubles only and has no derivatives", force.name()));
     }
-    if (force.claims().velocity_dependent) {
+    if (force.claims().velocity_dependent && !velocities) {
       throw Error(fmt::format(
           "the force '{}' depends on velocities, and kicks by it have no derivatives here; use a method for y' = f, "
           "such as 'gauss_8' with adaptive = false",
@@ -33,20 +33,24 @@ template <class Real> void check_slopes(const ForceField<Real>& forces) {
 }  // namespace
 
 template <class Real>
-ForceSlopes<Real>::ForceSlopes(ForceField<Real> forces, const ParticleSystem<Real>& s)
+ForceSlopes<Real>::ForceSlopes(ForceField<Real> forces, const ParticleSystem<Real>& s, bool velocities)
     : forces_(std::move(forces)), moving_(s.template as<D>()), a_(s.size()) {
-  check_slopes(forces_);
+  check_slopes(forces_, velocities);
   if (any()) bind_force(forces_, s);
   moving_.clock() = Clock<D>::free(0);
 }
 
 template <class Real>
 const VectorColumn<Dual<Real, 1>>& ForceSlopes<Real>::sum(char letter, const Real& time, const VectorColumn<Real>& x,
-                                                          const VectorColumn<Real>& u) {
-  auto& moving = moving_.positions();
-  for (int k = 0; k < 3; ++k) {
-    for (Index i = 0; i < x.size(); ++i) moving.component(k)[i] = along(x.component(k)[i], u.component(k)[i]);
-  }
+                                                          const VectorColumn<Real>& u, const VectorColumn<Real>* v,
+                                                          const VectorColumn<Real>* w) {
+  const auto move = [](const VectorColumn<Real>& from, const VectorColumn<Real>& by, VectorColumn<D>& moving) {
+    for (int k = 0; k < 3; ++k) {
+      for (Index i = 0; i < from.size(); ++i) moving.component(k)[i] = along(from.component(k)[i], by.component(k)[i]);
+    }
+  };
+  move(x, u, moving_.positions());
+  if (v != nullptr) move(*v, *w, moving_.velocities());
   moving_.clock().set_stage_offset(D(time));
   ForceSink<D> sink(a_, std::as_const(moving_), {});
   if (letter != 0) sink.set_kick_letter(letter);

@@ -23,12 +23,15 @@ template <class Real> class ForceSlopes {
  public:
   using D = Dual<Real, 1>;
 
-  ForceSlopes(ForceField<Real> forces, const ParticleSystem<Real>& s);
+  /// @param velocities  whether forces may depend on them, and `sum` is given them
+  ForceSlopes(ForceField<Real> forces, const ParticleSystem<Real>& s, bool velocities = false);
   bool any() const { return !forces_.terms().empty(); }
   ForceClaims claims() const { return claims_of(forces_); }
-  /// Sums the forces of the kick `letter`, 0 for all, at positions x + epsilon u.
-  /// @return shape (n): in the values accelerations at x, in the slopes their change along u
-  const VectorColumn<D>& sum(char letter, const Real& time, const VectorColumn<Real>& x, const VectorColumn<Real>& u);
+  /// Sums the forces of the kick `letter`, 0 for all, at positions x + epsilon u and velocities v + epsilon w.
+  /// @param v, w  null: as they were
+  /// @return shape (n): in the values accelerations at (x, v), in the slopes their change along (u, w)
+  const VectorColumn<D>& sum(char letter, const Real& time, const VectorColumn<Real>& x, const VectorColumn<Real>& u,
+                             const VectorColumn<Real>* v = nullptr, const VectorColumn<Real>* w = nullptr);
   /// Of the particles, where they are not those that this was made for. @param mass  of particle i
   template <class Mass> void set_masses(const Mass& mass) {
     for (Index i = 0; i < moving_.size(); ++i) moving_.masses()[i] = D(mass(i));

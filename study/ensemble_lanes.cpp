@@ -128,10 +128,6 @@ std::string why_alone_by_monitors(const Scene& scene) {
     if (watch.monitor.make(watched).wanted().action) {
       return fmt::format("monitor '{}' asks for the action of the flows", watch.monitor.name);
     }
-    if (changes > 0 && scene.integrator.classical) {
-      return fmt::format("monitor '{}' follows a small change, which goes along with splitting methods only",
-                         watch.monitor.name);
-    }
     if (changes > 1) {
       return fmt::format("monitor '{}' follows {} vectors, of which one goes in lanes", watch.monitor.name, changes);
     }
