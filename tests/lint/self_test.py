@@ -1,6 +1,7 @@
 """The lints' own test: each must find what is planted for it and nothing in a clean file."""
 
 import argparse
+import json
 import pathlib
 import tempfile
 
@@ -160,6 +161,23 @@ def compiler_failures(compiler):
             found = headers.compile_problems(root, compiler, [])
             if len(found) != 1 or f"{name}: does not compile alone" not in found[0]:
                 yield f"headers: planted {name}, which lacks <vector>, found {found}"
+    # What has compiled is tried again when what it includes has changed, what has not compiled every time.
+    with planted("engine/bad.hpp", "#pragma once\ninline std::vector<int> f() { return {}; }\n", parts=False) as root:
+        passed = pathlib.Path(root) / "passed.json"
+        found = [headers.compile_problems(root, compiler, [], passed) for _ in range(2)]
+        (pathlib.Path(root) / "engine/clean.hpp").write_text("#pragma once\ninline std::vector<int> g() { return {}; }\n")
+        found.append(headers.compile_problems(root, compiler, [], passed))
+        if [len(one) for one in found] != [1, 1, 3]:
+            yield f"headers: with what has passed, found {found}"
+        if headers.compile_problems(root, "/bin/true", [], passed) or len(json.loads(passed.read_text())) != 3:
+            yield "headers: what has passed is not written"
+        tried = pathlib.Path(root) / "tried"
+        (pathlib.Path(root) / "compiler").write_text(f"#!/bin/sh\n[ $# = 1 ] && exit\necho >>{tried}\n")
+        (pathlib.Path(root) / "compiler").chmod(0o755)
+        for _ in range(2):
+            headers.compile_problems(root, f"{root}/compiler", [], passed)
+        if tried.read_text().count("\n") != 3:
+            yield "headers: what has passed is tried again"
 
 
 def symbol_failures():
