@@ -1,5 +1,6 @@
 // Trajectories as text, extended XYZ and CSV, and frames as bodies of new scenes.
 #include "engine/bodies.hpp"
+#include "io/csv_columns.hpp"
 #include "io/files.hpp"
 #include "io/frame_particles.hpp"
 #include "io/frame_sites.hpp"
@@ -165,7 +166,8 @@ std::string csv_head(const Frames& shared) {
   std::string head =
       fmt::format("step,time{0},id,name,x{1},y{1},z{1},vx{2},vy{2},vz{2}", unit(shared.time_unit), length, velocity);
   for (const auto& [name, column] : shared.columns) {
-    for (Index k = 0; k < column.first; ++k) head += fmt::format(",{}[{}]{}", name, k, unit(column.second));
+    const ColumnInfo info{.name = name, .dimension = "", .width = static_cast<int>(column.first)};
+    for (const std::string& one : names_of(info)) head += fmt::format(",{}{}", one, unit(column.second));
   }
   return head.append("\n");
 }
@@ -174,7 +176,13 @@ std::string csv_head(const Frames& shared) {
 std::string beyond_a_table(const ParticleSystem<double>& s) {
   if (s.box().is_periodic()) return "a periodic box";
   if (s.topology() != nullptr) return "types or bonds";
-  return s.columns().empty() ? "" : fmt::format("a column '{}'", s.columns().begin()->info.name);
+  if (s.bodies() != nullptr) return "rigid bodies";
+  try {
+    for (const ColumnInfo& column : s.columns().infos()) headings_of(column, s.units());
+  } catch (const Error& error) {
+    return error.message();
+  }
+  return "";
 }
 
 /// 17 digits are read back to the bit, and units are those of the run, so that nothing is converted.
@@ -183,13 +191,23 @@ void write_body_table(const ParticleSystem<double>& s, std::ofstream& target) {
   const auto in = [&](const Dimension& dimension) {
     return units.is_reduced() ? std::string() : fmt::format(" [{}]", unit_of(dimension, units));
   };
-  target << fmt::format("id,name,mass{0},x{1},y{1},z{1},vx{2},vy{2},vz{2}\n", in(dimensions::mass),
+  target << fmt::format("id,name,mass{0},x{1},y{1},z{1},vx{2},vy{2},vz{2}", in(dimensions::mass),
                         in(dimensions::length), in(dimensions::velocity));
+  for (const auto& column : s.columns())
+    target << "," << fmt::format("{}", fmt::join(headings_of(column.info, units), ","));
+  target << "\n";
   for (Index i = 0; i < s.size(); ++i) {
     const Vec3<double> x = s.positions()[i], v = s.velocities()[i];
-    target << fmt::format("{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
+    target << fmt::format("{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}",
                           s.ids()[static_cast<std::size_t>(i)], quoted_field(s.name(i)), s.masses()[i], x[0], x[1],
                           x[2], v[0], v[1], v[2]);
+    for (const auto& column : s.columns()) {
+      column.visit([&](const auto& values) {
+        for (int k = 0; k < column.info.width; ++k)
+          target << fmt::format(",{:.17g}", static_cast<double>(values.component(k)[i]));
+      });
+    }
+    target << "\n";
   }
 }
 
@@ -198,7 +216,7 @@ void convert_to_bodies(const std::filesystem::path& file, const std::filesystem:
   const bool table = out.extension() == ".csv";
   if (!table && out.extension() != ".h5") {
     throw Error(fmt::format("cannot write bodies to '{}': give a name that ends in .h5, or in .csv if there are no "
-                            "types, bonds, charges or box",
+                            "types, bonds, rigid bodies or box",
                             out.string()),
                 {.value = out.extension().string()});
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// The columns that a CSV table of bodies may have.
+/// The columns that a CSV table of bodies may have, as it is read and as it is written.
 
 #include "engine/columns.hpp"
 #include "io/body_table.hpp"
@@ -19,6 +19,10 @@ struct KnownColumn {
 /// Names of the numbers of a column of particles: "radius", or "spin[0]", "spin[1]", "spin[2]" as `convert` writes
 /// them.
 std::vector<std::string> names_of(const ColumnInfo& column);
+
+/// What stands in the first line of a table for a column of particles, with the units of a run.
+/// @throws Error  where a reader would take that for something else, or the unit is not known
+std::vector<std::string> headings_of(const ColumnInfo& column, const UnitSystem& units);
 
 /// All columns, in the order in which messages list them.
 std::vector<KnownColumn> known_columns(const BodiesOptions& options);

@@ -74,7 +74,7 @@ struct ConvertOptions {
 /// own units, which the comment of each frame tells.
 ///
 /// Bodies go into a trajectory of one frame (`.h5`), with all that particles have, or into a table (`.csv`) where that
-/// has room for it: there are no types, bonds, charges, columns or box. Both are read back to the bit.
+/// has room for it: there are no types, bonds, rigid bodies or box. Both are read back to the bit.
 /// @return the number of frames
 /// @throws Error for another extension, or images, a frame or room that are not there; FileError if a file cannot be
 ///   read or written

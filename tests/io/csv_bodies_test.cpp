@@ -3,6 +3,10 @@
 #include "engine/given_orbit.hpp"
 #include "engine/orbital_elements.hpp"
 #include "io/bodies.hpp"
+#include "io/digest.hpp"
+#include "io/inspect.hpp"
+#include "io/trajectory.hpp"
+#include "numbers/random.hpp"
 #include "tests/io/support.hpp"
 
 using namespace noether;
@@ -23,6 +27,16 @@ std::string csv_refusal(const std::string& content, const char* units = "solar")
   const std::string message = error_of([&] { io::read_bodies(folder / "b.csv", {.units = &unit_system(units)}); });
   const std::size_t name = message.find("b.csv");
   return name == std::string::npos ? message : message.substr(name);
+}
+
+/// The numbers of a particle in a column.
+std::vector<double> row_of(const ParticleSystem<double>& s, const std::string& name, Index i) {
+  std::vector<double> row;
+  s.columns().find(name)->visit([&](const auto& values) {
+    for (int k = 0; k < s.columns().find(name)->info.width; ++k)
+      row.push_back(static_cast<double>(values.component(k)[i]));
+  });
+  return row;
 }
 
 const std::string head = "name,mass [Msun],x [au],y [au],z [au],vx [au/day],vy [au/day],vz [au/day]\n";
@@ -99,6 +113,63 @@ TEST_CASE("a table has columns that parts give to particles, in units of their o
         "b.csv:1: column 'spin' has 3 numbers; give a column for each: spin[0], spin[1], spin[2]");
   CHECK(csv_refusal("mass,x,y,z,vx,vy,vz,radius\n", "reduced").starts_with("b.csv:1: unknown column 'radius'"));
 }
+
+#if NOETHER_HDF5
+TEST_CASE("columns of parts are written as they are read, to the bit, in every system of units", "[bodies][inspect]") {
+  const std::vector<ColumnInfo> infos = {
+      {.name = "charge", .dimension = "charge"},
+      {.name = "phase", .dimension = "angle"},
+      {.name = "radius", .dimension = "length"},
+      {.name = "share", .dimension = "1"},
+      {.name = "spin", .dimension = "mass length^2/time", .role = ColumnRole::momentum, .width = 3},
+      {.name = "turn", .dimension = "1", .role = ColumnRole::configuration, .width = 4},
+      {.name = "warmth", .dimension = "mass length^2/time^2/temperature", .width = 9}};
+  for (const char* units : {"solar", "molecular", "si", "reduced"}) {
+    INFO(units);
+    ParticleSystem<double> s(unit_system(units));
+    Philox random(7, 1);
+    for (int i = 0; i < 5; ++i)
+      s.add(fmt::format("{}", i), random.uniform(), {random.uniform(), 0, 1}, {0, 0, random.uniform()});
+    for (const ColumnInfo& info : infos) {
+      s.add_column(info);
+      for (Index i = 0; i < s.size(); ++i) {
+        std::vector<double> row;
+        for (int k = 0; k < info.width; ++k)
+          row.push_back((random.uniform() - 0.5) * std::pow(10, 60 * random.uniform() - 30));
+        s.set_row(info.name, i, row);
+      }
+    }
+    const test::ScratchFolder folder;
+    io::write_one_frame(folder / "one.h5", s, 0, 0);
+    io::convert(folder / "one.h5", folder / "one.csv", {.bodies = true});
+    const auto back =
+        io::read_body_table(folder / "one.csv", {.units = &unit_system(units), .columns = infos}).particles;
+    CHECK(back.columns().infos() == s.columns().infos());
+    for (const ColumnInfo& info : infos) {
+      for (Index i = 0; i < s.size(); ++i) CHECK(row_of(back, info.name, i) == row_of(s, info.name, i));
+    }
+    CHECK(io::digest(back) == io::digest(s));
+    io::write_one_frame(folder / "two.h5", back, 0, 0);
+    io::convert(folder / "two.h5", folder / "two.csv", {.bodies = true});
+    CHECK(test::read_text(folder / "two.csv") == test::read_text(folder / "one.csv"));
+  }
+}
+
+TEST_CASE("a column that a table cannot have is refused by its name", "[bodies][inspect][messages]") {
+  for (const char* name : {"e", "vx", "about", "a,b", "c#"}) {
+    ParticleSystem<double> s(unit_system("si"));
+    s.add("one", 1, {0, 0, 0}, {0, 0, 0});
+    s.add_column(ColumnInfo{.name = name, .dimension = "1"});
+    const test::ScratchFolder folder;
+    io::write_one_frame(folder / "one.h5", s, 0, 0);
+    CHECK(error_of([&] { io::convert(folder / "one.h5", folder / "one.csv", {.bodies = true}); }) ==
+          fmt::format("cannot write bodies to '{}': a table cannot store a column '{}', a name that tables have for "
+                      "something else or cannot write; give a name that ends in .h5",
+                      (folder / "one.csv").string(), name));
+    CHECK_FALSE(std::filesystem::exists(folder / "one.csv"));
+  }
+}
+#endif
 
 TEST_CASE("a table without names numbers its bodies, and one in reduced units takes bare numbers", "[bodies]") {
   const auto s = read_csv("\xEF\xBB\xBFmass,x,y,z,vx,vy,vz [1]\n1,0,0,0,0,0,0.1\n2,1,0,0,0,0,0", "reduced");

@@ -335,7 +335,7 @@ TEST_CASE("what is no start is refused", "[bodies][messages]") {
             "': a table cannot store a periodic box; give a name that ends in .h5");
   CHECK(error_of([&] { io::convert(file, folder / "start.xyz", {.bodies = true}); }) ==
         "cannot write bodies to '" + (folder / "start.xyz").string() +
-            "': give a name that ends in .h5, or in .csv if there are no types, bonds, charges or box");
+            "': give a name that ends in .h5, or in .csv if there are no types, bonds, rigid bodies or box");
   CHECK(error_of([&] { io::convert(file, file, {.bodies = true}); }) ==
         "'" + name + "' would overwrite itself; give another name");
   CHECK(error_of([&] { io::convert(file, folder / "all.h5"); }) ==

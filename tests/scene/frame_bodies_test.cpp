@@ -1,6 +1,7 @@
 // `bodies = "run.h5"`: scenes that start from a frame of another run.
 
 #include "engine/charge.hpp"
+#include "engine/sphere_columns.hpp"
 #include "io/digest.hpp"
 #include "io/frame_particles.hpp"
 #include "io/inspect.hpp"
@@ -13,6 +14,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #if NOETHER_HDF5
 
@@ -192,6 +194,43 @@ TEST_CASE("the table and the file of one frame are the same start as the frame",
   CHECK(bits(run.scene("bodies = 'start.h5'\n", gravity_rest)) == frame);
   CHECK(bits(run.scene("bodies = 'run.h5'\n", gravity_rest)) ==
         bits(run.scene("bodies = 'run.h5'\nframe = 10\n", gravity_rest)));
+}
+
+TEST_CASE("a table has the columns of parts, and is the same start as the frame", "[scene][bodies]") {
+  // Spheres of open space: a radius, and three columns of what contacts have done, one of them a count.
+  const std::string sheet =
+      "[hamiltonian]\ntype = 'shearing_sheet'\nOmega = '1.5e-4 1/s'\n[[hamiltonian.force]]\ntype = 'hard_spheres'\n"
+      "restitution = 0.7\n[integrator]\nmethod = 'verlet'\nstep = '100 s'\nsteps = 12\n";
+  const EarlierRun run(
+      "units = 'si'\n[particles]\n[[particles.body]]\nname = 'a'\nmass = '2 kg'\nx = ['0 m', '0 m', '0.1 m']\n"
+      "v = ['3 mm/s', '0 m/s', '0 m/s']\nradius = '0.7 m'\n[[particles.body]]\nname = 'b, \"large\"'\nmass = '3 kg'\n"
+      "x = ['2 m', '0.3 m', '0 m']\nv = ['0 m/s', '-0.45 mm/s', '0 m/s']\nradius = '0.8 m'\n" +
+      sheet);
+  io::convert(run.folder / "run.h5", run.folder / "start.csv", {.bodies = true});
+  const std::string text = read_text(run.folder / "start.csv");
+  CHECK(text.substr(0, text.find('\n')) ==
+        "id,name,mass [kg],x [m],y [m],z [m],vx [m/s],vy [m/s],vz [m/s],contact_heat [J],"
+        "contact_transport [kg m^2/s],contacts,radius [m]");
+  const Scene table = run.scene("bodies = 'start.csv'\n", sheet), frame = run.scene("bodies = 'run.h5'\n", sheet);
+  CHECK(table.warnings.empty());
+  CHECK(io::digest(table.particles) == io::digest(frame.particles));
+  const auto columns = [](const Scene& scene) {
+    const ParticleSystem<double>& s = scene.particles;
+    std::vector<double> all;
+    for (Index i = 0; i < 2; ++i) {
+      all.insert(all.end(), {s.column<BodyRadius>()[i], s.column<ContactCount>()[i], s.column<ContactHeat>()[i],
+                             s.column<ContactTransport>()[i]});
+    }
+    return all;
+  };
+  CHECK(columns(table) == columns(frame));
+  CHECK(columns(table)[0] == 0.7);
+  CHECK(columns(table)[1] == 1);
+  CHECK(columns(table)[2] > 0);
+  // And back: a run of the table has a table with the same text.
+  io::write_one_frame(run.folder / "again.h5", table.particles, 0, 0);
+  io::convert(run.folder / "again.h5", run.folder / "again.csv", {.bodies = true});
+  CHECK(read_text(run.folder / "again.csv") == read_text(run.folder / "start.csv"));
 }
 
 TEST_CASE("the box of a frame stays as it is where the scene gives the same, or is taken away", "[scene][bodies]") {

@@ -176,6 +176,7 @@ TEST_CASE("Omega is told once, in the Hamiltonian, and another one is refused", 
                     "'shearing_sheet'");
 }
 
+#if NOETHER_HDF5
 namespace {
 
 /// A patch of a few spheres and its viscosity, looked at in the two steps of a run.
@@ -249,5 +250,6 @@ TEST_CASE("the scene that a file stores has the viscosity of its run", "[ring_pa
     CHECK(again.scene == first.scene);
   }
 }
+#endif
 
 }  // namespace noether
