@@ -72,4 +72,22 @@ class LaneField {
   std::optional<Failure> failure_;
 };
 
+/// Where the systems and their changes stand among numbers laid out as q of a field, once or several times over.
+class LaneParts {
+ public:
+  LaneParts() = default;
+  explicit LaneParts(const LaneField& f)
+      : size_(LaneField::lanes * static_cast<std::size_t>(f.part())), count_(1 + f.changes()) {}
+
+  /// Makes a change of one lane longer.
+  void scale_change(LaneNumbers& numbers, std::size_t lane, std::size_t change, double factor) const {
+    for (std::size_t at = (1 + change) * size_; at < numbers.size(); at += count_ * size_)
+      scale_lane(numbers.data() + at, size_, lane, factor);
+  }
+
+ private:
+  std::size_t size_ = 0;   ///< numbers of a part
+  std::size_t count_ = 1;  ///< parts
+};
+
 }  // namespace noether

@@ -138,9 +138,7 @@ class MethodLanes final : public LaneRun {
           }
         },
         [this](std::size_t lane, std::size_t change, double factor) {
-          for (const std::size_t half : {0, 1}) {
-            scale_lane(y_.data() + place(half, 1 + change), place(0, 1), lane, factor);
-          }
+          LaneParts(field_).scale_change(y_, lane, change, factor);
           if (begun_) method_->scale_change(lane, change, factor);
         });
   }

@@ -113,14 +113,14 @@ class CollocationLanes final : public LaneMethod {
     return all;
   }
   void scale_change(std::size_t lane, std::size_t change, double factor) override {
-    const std::size_t at = (1 + change) * part_;
-    for (double* low : {low_.data() + at, low_.data() + half_ + at}) scale_lane(low, part_, lane, factor);
+    parts_.scale_change(low_, lane, change, factor);
     scale_lane(previous_[1 + change].data(), stages_ * part_, lane, factor);
   }
   void begin(LaneField& f, double t, double h, const LaneNumbers& y) override {
     make_weights(h);
     half_ = y.size() / 2;
     part_ = lanes * static_cast<std::size_t>(f.part());
+    parts_ = LaneParts(f);
     low_.assign(y.size(), 0);
     for (auto* parts : {&previous_, &rates_}) parts->assign(half_ / part_, LaneNumbers(stages_ * part_));
     for (LaneNumbers* all : {&trial_, &q_}) all->resize(stages_ * part_);
@@ -206,6 +206,7 @@ class CollocationLanes final : public LaneMethod {
   StageWeights positions_, positions_ahead_, velocities_, velocities_ahead_;
   EndWeights once_, twice_;
   std::size_t half_ = 0, part_ = 0;                  ///< numbers of all lanes' q; of one part of them
+  LaneParts parts_;                                  ///< of numbers laid out as y
   LaneNumbers low_;                                  ///< rounding errors of y
   std::vector<LaneNumbers> previous_, rates_;        ///< by part, each by stage: of the last step; of the one at hand
   LaneNumbers trial_, q_, v_, dq_, dv_, low_begin_;  ///< of the step at hand; stages of the systems and of a change

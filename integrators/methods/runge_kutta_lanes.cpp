@@ -24,13 +24,11 @@ class RungeKuttaLanes final : public LaneMethod {
     return {&k_[0]};
   }
   void scale_change(std::size_t lane, std::size_t change, double factor) override {
-    if (!first_same_as_last_) return;
-    for (double* half : {k_[0].data(), k_[0].data() + k_[0].size() / 2})
-      scale_lane(half + (1 + change) * part_, part_, lane, factor);
+    if (first_same_as_last_) parts_.scale_change(k_[0], lane, change, factor);
   }
   void begin(LaneField& f, double t, double h, const LaneNumbers& y) override {
     h_ = h;
-    part_ = LaneField::lanes * static_cast<std::size_t>(f.part());
+    parts_ = LaneParts(f);
     for (LaneNumbers& k : k_) k.resize(y.size());
     y1_.resize(y.size());
     if (first_same_as_last_) lane_rate(f, t, y, k_[0]);
@@ -57,7 +55,7 @@ class RungeKuttaLanes final : public LaneMethod {
   LaneTerms end_;
   std::vector<LaneNumbers> k_;
   LaneNumbers y1_;
-  std::size_t part_ = 0;  ///< numbers of all lanes' q of the systems
+  LaneParts parts_;
   double h_ = 0;
 };
 
