@@ -2,7 +2,7 @@
 /// beside WHFast512 of `rebound` where Python has it and the processor has AVX-512; and the same in lanes with MEGNO, a
 /// small change that goes along and is measured at every step. Then the outer planets for 1000 years: microseconds of a
 /// system, and the largest error of three systems against 113 bits, beside batches of eight by `heyoka`, at the loosest
-/// of its tolerances whose error is no larger, or the tightest, where Python has it.
+/// of its tolerances whose error is no larger, or the tightest, where Python has it; and with MEGNO in lanes.
 ///
 /// Protocol: 9 rounds of every variant, its system alone and the peer in turn, each over 50 000 steps (with one system
 /// to a register 100 000), after one to warm up; medians of processor times. Planets: those of the Solar System, 5 days
@@ -24,6 +24,7 @@
 #include "monitors/chaos.hpp"
 #include "scene/scene.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -109,12 +110,13 @@ SplittingLanes run_of(const Variant& one) {
   return run;
 }
 
-/// The same with a small change of each.
+/// A run with a small change of each system.
 class MegnoRun {
  public:
-  explicit MegnoRun(const Variant& one) : run_(run_of(one)) {
+  /// @param run  that has not begun, of so many bodies a system
+  MegnoRun(LaneRun& run, Index bodies) : run_(run) {
     run_.carry(1);
-    const auto numbers = 6 * static_cast<std::size_t>(one.bodies.size());
+    const auto numbers = 6 * static_cast<std::size_t>(bodies);
     for (std::size_t lane = 0; lane < SystemLanes::lanes; ++lane) {
       changes_.push_back(std::make_shared<LaneChange>());
       changes_.back()->begin(0, std::vector<double>(numbers, 1e-3));
@@ -124,7 +126,7 @@ class MegnoRun {
   bool advance(std::int64_t steps) {
     constexpr std::int64_t look = 1000;
     for (std::int64_t made = 0; made < steps; made += look) {
-      if (!run_.advance(look)) return false;
+      if (!run_.advance(std::min(look, steps - made))) return false;
       for (std::size_t k = 0; k < changes_.size(); ++k)
         changes_[k]->tell([&](std::int64_t, double growth) { sums_[k].add(growth); });
     }
@@ -132,7 +134,7 @@ class MegnoRun {
   }
 
  private:
-  SplittingLanes run_;
+  LaneRun& run_;
   std::vector<std::shared_ptr<LaneChange>> changes_;
   MegnoSums<double> sums_[SystemLanes::lanes];
 };
@@ -141,8 +143,8 @@ void measure(const bench::Rows& rows, const Variant& one, bench::PeerProgram& pe
   constexpr int rounds = 9;
   constexpr std::int64_t steps = 50'000;
   constexpr auto systems = static_cast<double>(SystemLanes::lanes);
-  SplittingLanes run = run_of(one);
-  MegnoRun megno(one);
+  SplittingLanes run = run_of(one), with_changes = run_of(one);
+  MegnoRun megno(with_changes, one.bodies.size());
   Simulation<double> alone(one.bodies, Composition<AnyHamiltonian<double>>(one.alone, *one.scheme, one.options),
                            one.step);
   std::vector<double> in_lanes, with_megno, times, by_itself, theirs;
@@ -288,14 +290,22 @@ void measure(const bench::Rows& rows, const Orbits& orbits, const Stepped& one, 
   constexpr int rounds = 5;
   const double step = orbits.until / static_cast<double>(one.steps);
   const Index bodies = orbits.starts[0].size();
-  std::vector<double> in_lanes, alone, theirs, their_errors;
+  std::vector<double> in_lanes, times, alone, theirs, their_errors;
   double error = 0;
   std::optional<double> tolerance;
   for (int round = 0; round <= rounds; ++round) {
-    const auto run = one.lanes(orbits.starts[0], Clock<double>::fixed(0, step));
-    for (std::size_t lane = 0; lane < LaneRun::lanes; ++lane) run->put(lane, orbits.starts[lane]);
+    const auto begin = [&] {
+      auto run = one.lanes(orbits.starts[0], Clock<double>::fixed(0, step));
+      for (std::size_t lane = 0; lane < LaneRun::lanes; ++lane) run->put(lane, orbits.starts[lane]);
+      return run;
+    };
+    const auto run = begin(), with_changes = begin();
+    MegnoRun megno(*with_changes, bodies);
     const double seconds = bench::processor_seconds_of([&] {
       if (!run->advance(one.steps)) throw Error("a run failed");
+    });
+    const double with_megno = bench::processor_seconds_of([&] {
+      if (!megno.advance(one.steps)) throw Error("a run failed");
     });
     run->settle();
     std::vector<ParticleSystem<double>> ends = orbits.starts;
@@ -308,6 +318,7 @@ void measure(const bench::Rows& rows, const Orbits& orbits, const Stepped& one, 
     if (round == 0 && peer.version()) tolerance = tolerance_of(peer, orbits, error);
     if (round > 0) {
       in_lanes.push_back(1e6 * seconds / LaneRun::lanes);
+      times.push_back(with_megno / seconds);
       alone.push_back(1e6 * by_itself);
     }
     if (!tolerance) continue;
@@ -324,6 +335,7 @@ void measure(const bench::Rows& rows, const Orbits& orbits, const Stepped& one, 
   }
   const std::string name = fmt::format("1000 years, {} by {:.4g} days", one.name, step);
   rows.add(name + "/lanes", "system_us", bench::Measured(in_lanes), "us", bodies, beside);
+  rows.add(name + "/lanes, megno over plain", "ratio", bench::Measured(times), "1", bodies);
   rows.add(name + "/alone", "system_us", bench::Measured(alone), "us", bodies);
   rows.add(name + "/lanes", "error", bench::Measured({error}), "1", bodies, beside_error);
 }
