@@ -361,7 +361,12 @@ int main(int count, char** arguments) {
   if (!batches.version()) fmt::print(stderr, "heyoka is not installed: it is left out of the comparison\n");
   const Orbits orbits(outer, 365250);
   measure(rows, orbits, split("leapfrog", schemes::verlet, 36525), batches);
-  for (const auto& [name, steps] : std::vector<std::pair<std::string, std::int64_t>>{
-           {"rk4", 7305}, {"dprkn_12", 1217}, {"gauss_2", 7305}, {"gauss_4", 2435}, {"gauss_6", 1217}})
+  for (const auto& [name, steps] : std::vector<std::pair<std::string, std::int64_t>>{{"rk4", 7305},
+                                                                                     {"dprkn_12", 1217},
+                                                                                     {"stormer_cowell_12", 18262},
+                                                                                     {"adams_bashforth_4", 18262},
+                                                                                     {"gauss_2", 7305},
+                                                                                     {"gauss_4", 2435},
+                                                                                     {"gauss_6", 1217}})
     measure(rows, orbits, stepped(name, steps), batches);
 }

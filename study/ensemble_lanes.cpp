@@ -67,7 +67,7 @@ std::string why_method_has_no_lanes(const MethodInfo& info) {
   };
   if (is_of(methods::encke_list()) || is_of(methods::wide_gauss_list()))
     return fmt::format("the stages of '{}' fill the lanes of one system", info.name);
-  if (is_of(methods::hbvm_list())) return fmt::format("the nodes of '{}' fill the lanes of one system", info.name);
+  if (info.family == "line integral") return fmt::format("the nodes of '{}' take the lanes of one system", info.name);
   if (info.takes(*linear_solver))
     return fmt::format("the method '{}' solves linear systems, which have no lanes", info.name);
   return fmt::format("the method '{}' has no lanes", info.name);

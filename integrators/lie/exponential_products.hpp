@@ -30,6 +30,8 @@ const ExponentialTableau& crouch_grossman_3();
 const ExponentialTableau& crouch_grossman_4();
 const ExponentialTableau& commutator_free_3();
 const ExponentialTableau& commutator_free_4();
+/// By the name of its method; null where there is none.
+const ExponentialTableau* exponential_table(std::string_view name);
 
 }  // namespace tableaus
 

@@ -59,4 +59,12 @@ const ExponentialTableau& commutator_free_4() {
   return table;
 }
 
+const ExponentialTableau* exponential_table(std::string_view name) {
+  if (name == "crouch_grossman_3") return &crouch_grossman_3();
+  if (name == "crouch_grossman_4") return &crouch_grossman_4();
+  if (name == "commutator_free_3") return &commutator_free_3();
+  if (name == "commutator_free_4") return &commutator_free_4();
+  return nullptr;
+}
+
 }  // namespace noether::tableaus

@@ -111,9 +111,36 @@ void finish(const LaneEnd& sums) {
   }
 }
 
+void add(std::ptrdiff_t n, const double* x, double* value, double* low) {
+  const Lanes d;
+  for (std::ptrdiff_t at = 0; at < n; at += lanes)
+    add_with_error(d, value + at, low + at, lanes, hn::LoadU(d, x + at), hn::Zero(d));
+}
+
+void correct(const LaneCorrection& by, double* moved) {
+  const Lanes d;
+  const LaneCorrection c = by;
+  const Vector h = hn::Set(d, c.h), weight = hn::Set(d, c.weight);
+  for (std::ptrdiff_t lane = 0; lane < systems; lane += lanes) {
+    const auto taken = hn::MaskFromVec(hn::BitCast(d, hn::LoadU(BitLanes(), c.on + lane)));
+    Bits most = hn::Zero(BitLanes());
+    for (std::ptrdiff_t at = lane; at < systems * c.n; at += systems) {
+      const Vector fresh = hn::LoadU(d, c.fresh + at), before = hn::LoadU(d, c.point + at);
+      const Vector next = hn::MulAdd(weight, fresh, hn::LoadU(d, c.known + at));
+      const Vector change = hn::Abs(hn::Sub(next, before)), reach = hn::Abs(hn::Mul(h, hn::LoadU(d, c.rate + at)));
+      const Vector size = hn::Max(hn::Max(hn::Abs(hn::LoadU(d, c.y + at)), hn::Abs(next)), reach);
+      const Vector relative = hn::IfThenZeroElse(hn::Eq(change, hn::Zero(d)), hn::Div(change, size));
+      most = hn::Max(most, size_of(relative));
+      hn::StoreU(hn::IfThenElse(taken, next, before), d, c.point + at);
+      hn::StoreU(hn::IfThenElse(taken, fresh, hn::LoadU(d, c.of_rate + at)), d, c.of_rate + at);
+    }
+    hn::StoreU(hn::BitCast(d, most), d, moved + lane);
+  }
+}
+
 }  // namespace
 
 extern const LaneSumsKernels lane_sums_kernels;
-const LaneSumsKernels lane_sums_kernels{sum, stages, take, finish};
+const LaneSumsKernels lane_sums_kernels{sum, stages, take, finish, add, correct};
 
 }  // namespace noether::NOETHER_SIMD_LEVEL

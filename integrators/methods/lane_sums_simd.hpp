@@ -41,6 +41,17 @@ struct LaneEnd {
   double *q, *q_low, *v, *v_low;                      ///< shape (n, 8)
 };
 
+/// A new point that an implicit formula is put to by the rate there: known + weight fresh.
+struct LaneCorrection {
+  std::ptrdiff_t n;
+  double h, weight;
+  const double *y, *rate;   ///< the point before and the rate there, shape (n, 8)
+  const double* known;      ///< all terms but that of the new rate, shape (n, 8)
+  const double* fresh;      ///< the rate at the new point, shape (n, 8)
+  const std::int64_t* on;   ///< lanes that are to be changed (all bits; else 0), shape (8)
+  double *point, *of_rate;  ///< the new point, and the rate that it comes from, shape (n, 8)
+};
+
 struct LaneSumsKernels {
   void (*sum)(const LaneSum& sums);
   void (*stages)(const LaneStages& sums);
@@ -49,6 +60,11 @@ struct LaneSumsKernels {
   void (*take)(std::ptrdiff_t n, const double* fresh, const std::int64_t* on, double* rates, double* change,
                double* size);
   void (*finish)(const LaneEnd& sums);
+  /// value + low += x, for n numbers, a whole number of eights.
+  void (*add)(std::ptrdiff_t n, const double* x, double* value, double* low);
+  /// @param moved  by how much the new point is moved in a lane at most, in units of the size of a variable, which is
+  ///   the largest of |y|, |point| and |h rate|: not a number if one is none; shape (8)
+  void (*correct)(const LaneCorrection& by, double* moved);
 };
 
 NOETHER_KERNELS(LaneSumsKernels, lane_sums_kernels)

@@ -26,13 +26,14 @@ void LaneTerms::add(double weight, std::size_t which) {
   rates_.push_back(nullptr);
 }
 
-void LaneTerms::sum(const double* y, double h, const std::vector<LaneNumbers>& k, std::size_t count, double* out) {
+void LaneTerms::sum(const double* y, const double* v, double h, const std::vector<LaneNumbers>& k, std::size_t count,
+                    double* out) {
   for (std::size_t j = 0; j < which_.size(); ++j) rates_[j] = k[which_[j]].data();
   lane_sums_kernels().sum({.n = static_cast<std::ptrdiff_t>(count / LaneField::lanes),
                            .y = y,
-                           .v = nullptr,
+                           .v = v,
                            .h = h,
-                           .c = 0,
+                           .c = 1,
                            .g = 1,
                            .terms = std::ssize(weights_),
                            .k = rates_.data(),

@@ -16,10 +16,12 @@ class LaneTerms {
   /// Of the newest rate, the one before, and so on: the oldest are added first, for their weights are the least.
   static LaneTerms of_past(const std::vector<double>& weights);
 
-  /// out = y + h sum_j w_j k_j, which may stand in the place of y. @param count  of numbers, those of eight lanes
-  void sum(const double* y, double h, const std::vector<LaneNumbers>& k, std::size_t count, double* out);
+  /// out = y + h (v + sum_j w_j k_j), which may stand in the place of y. @param v  null: none
+  /// @param count  of numbers, those of eight lanes
+  void sum(const double* y, const double* v, double h, const std::vector<LaneNumbers>& k, std::size_t count,
+           double* out);
   void sum(const LaneNumbers& y, double h, const std::vector<LaneNumbers>& k, LaneNumbers& out) {
-    sum(y.data(), h, k, y.size(), out.data());
+    sum(y.data(), nullptr, h, k, y.size(), out.data());
   }
 
  private:

@@ -1,6 +1,7 @@
 #include "integrators/lane_method.hpp"
 #include "integrators/methods/adams.hpp"
 #include "integrators/methods/explicit_tableaus.hpp"
+#include "integrators/methods/lane_sums_simd.hpp"
 #include "integrators/methods/lane_terms.hpp"
 #include "integrators/methods/stormer_cowell.hpp"
 
@@ -26,13 +27,7 @@ struct CompensatedLanes {
   }
   /// value + low += x, for `count` numbers from number `at` on.
   void add(std::size_t at, std::size_t count, const double* x) {
-    double *const v = value.data() + at, *const l = low.data() + at;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double sum = v[i] + x[i], part = sum - v[i];
-      const double error = l[i] + ((v[i] - (sum - part)) + (x[i] - part));
-      v[i] = sum + error;
-      l[i] = error - (v[i] - sum);
-    }
+    lane_sums_kernels().add(static_cast<std::ptrdiff_t>(count), x, value.data() + at, low.data() + at);
   }
 };
 
@@ -154,14 +149,9 @@ class AdamsLanes final : public LaneMethod {
   }
 
  private:
-  using PerLane = std::array<double, lanes>;
-
   /// Solves the implicit formula in each lane by itself, as `Adams::iterate`: the new point in `y1_`, its rate in
   /// `f1_`.
   std::optional<Failure> iterate(LaneField& f, double t, const LaneNumbers& y);
-  /// Puts the rates of `trial_` into the formula in lanes that are `on`. @param moved  by how much they move the new
-  /// point there, in units of its own size
-  void correct(const LaneNumbers& y, const std::array<std::int64_t, lanes>& on, PerLane& moved);
 
   Adams<double> method_;  ///< one system's, whose weights it has
   double implicit_;       ///< weight of the new rate
@@ -173,33 +163,28 @@ class AdamsLanes final : public LaneMethod {
   double h_ = 0;
 };
 
-void AdamsLanes::correct(const LaneNumbers& y, const std::array<std::int64_t, lanes>& on, PerLane& moved) {
-  const double weight = h_ * implicit_;
-  const double* const rate = rates_.newest().data();
-  moved.fill(0);
-  for (std::size_t i = 0; i < y.size(); i += lanes) {
-    for (std::size_t k = 0; k < lanes; ++k) {
-      const double fresh = trial_[i + k], before = y1_[i + k], next = known_[i + k] + weight * fresh;
-      const double by = std::abs(next - before);
-      const double size = std::max(std::max(std::abs(y[i + k]), std::abs(next)), std::abs(h_ * rate[i + k]));
-      const double one = by == 0 ? 0 : by / size;
-      moved[k] = one <= moved[k] || std::isnan(moved[k]) ? moved[k] : one;  // not a number is the worst
-      y1_[i + k] = on[k] != 0 ? next : before;
-      f1_[i + k] = on[k] != 0 ? fresh : f1_[i + k];
-    }
-  }
-}
-
 std::optional<Failure> AdamsLanes::iterate(LaneField& f, double t, const LaneNumbers& y) {
   constexpr double ulp = std::numeric_limits<double>::epsilon();
-  std::array<std::int64_t, lanes> on{};
-  PerLane change{}, before{}, rate{};
+  using PerLane = std::array<double, lanes>;
+  alignas(64) std::array<std::int64_t, lanes> on{};
+  alignas(64) PerLane change{};
+  PerLane before{}, rate{};
   std::optional<Failure> failure;
-  on.fill(1);
+  on.fill(-1);
   std::size_t going = lanes;
   for (int n = 1; going > 0; ++n) {
     lane_rate(f, t + h_, y1_, trial_);
-    correct(y, on, change);
+    lane_sums_kernels().correct({.n = static_cast<std::ptrdiff_t>(y.size() / lanes),
+                                 .h = h_,
+                                 .weight = h_ * implicit_,
+                                 .y = y.data(),
+                                 .rate = rates_.newest().data(),
+                                 .known = known_.data(),
+                                 .fresh = trial_.data(),
+                                 .on = on.data(),
+                                 .point = y1_.data(),
+                                 .of_rate = f1_.data()},
+                                change.data());
     for (std::size_t k = 0; k < lanes; ++k) {
       if (on[k] == 0) continue;
       // As `Adams::iterate`.
@@ -248,15 +233,16 @@ class StormerCowellLanes final : public LaneMethod {
       if (pulls_.count() == pulls_.most()) set_up_sums();
       return {};
     }
-    double *const S = sums_.value.data(), *const D = S + half_, *const D_low = sums_.low.data() + half_;
-    next_position_.sum(sums_.low.data(), 1, pulls_.all(), half_, past_.data());
-    for (std::size_t i = 0; i < half_; ++i) y[i] = S[i] + past_[i];
+    const double *const S = sums_.value.data(), *const S_low = sums_.low.data();
+    const double *const D = S + half_, *const D_low = S_low + half_;
+    next_position_.sum(S, S_low, 1, pulls_.all(), half_, y.data());
     remember(f, end, y);
     sums_.add(half_, half_, pulls_.newest().data());
     sums_.add(0, half_, D);
     sums_.add(0, half_, D_low);
-    velocity_.sum(D_low, 1, pulls_.all(), half_, past_.data());
-    for (std::size_t i = 0; i < half_; ++i) y[half_ + i] = (D[i] + past_[i]) / h_;
+    velocity_.sum(D, D_low, 1, pulls_.all(), half_, y.data() + half_);
+    const double per_h = 1 / h_;
+    for (std::size_t i = half_; i < 2 * half_; ++i) y[i] *= per_h;
     return {};
   }
 

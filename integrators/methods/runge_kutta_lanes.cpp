@@ -1,7 +1,9 @@
 #include "integrators/lane_method.hpp"
+#include "integrators/lie/exponential_products.hpp"
 #include "integrators/methods/explicit_tableaus.hpp"
 #include "integrators/methods/lane_terms.hpp"
 
+#include <string_view>
 #include <utility>
 
 namespace noether::lane_methods {
@@ -59,11 +61,35 @@ class RungeKuttaLanes final : public LaneMethod {
   double h_ = 0;
 };
 
+/// What products of exponentials are where points move along straight lines: a row has the sums of theirs.
+Tableau on_straight_lines(const ExponentialTableau& products) {
+  Tableau made{.a = {{}}, .b = {}, .c = {Quad(0)}, .order = products.order};
+  const auto row_of = [&](const ExponentialProduct& product) {
+    std::vector<Quad> row = made.a[static_cast<std::size_t>(product.from)];
+    row.resize(products.stages.size() + 1, Quad(0));
+    for (const std::vector<Quad>& weights : product.weights) {
+      for (std::size_t j = 0; j < weights.size(); ++j) row[j] += weights[j];
+    }
+    return row;
+  };
+  for (const ExponentialProduct& stage : products.stages) {
+    made.a.push_back(row_of(stage));
+    made.c.push_back(stage.c);
+  }
+  made.b = row_of(products.end);
+  return made;
+}
+
 }  // namespace
 
+/// With methods on groups, which on points are Runge-Kutta methods too: Munthe-Kaas's that of the table under it.
 std::unique_ptr<LaneMethod> runge_kutta(const MethodChoice& choice) {
+  std::string_view name = choice.info->name;
+  if (const ExponentialTableau* products = tableaus::exponential_table(name))
+    return std::make_unique<RungeKuttaLanes>(on_straight_lines(*products));
+  if (name.starts_with("rkmk_")) name.remove_prefix(5);
   for (const tableaus::NamedTableau& known : tableaus::all_explicit()) {
-    if (known.name == choice.info->name) return std::make_unique<RungeKuttaLanes>(known.table());
+    if (known.name == name) return std::make_unique<RungeKuttaLanes>(known.table());
   }
   return nullptr;
 }

@@ -247,6 +247,8 @@ TEST_CASE("what goes one by one says why", "[ensemble][lanes]") {
   CHECK(why("method = \"verlet_aba\"", "method = \"gauss_8\"") == "the method 'gauss_8' chooses its steps");
   CHECK(why("method = \"verlet_aba\"", "method = \"gauss_8\"\nadaptive = false") ==
         "the Hamiltonian 'wisdom_holman' has no lanes");
+  CHECK(why("method = \"verlet_aba\"", "method = \"galerkin_gauss_2\"") ==
+        "the method 'galerkin_gauss_2' has no lanes");
   CHECK(why("type = \"wisdom_holman\"", "type = \"wisdom_holman\"\ncoordinates = \"democratic\"") ==
         "coordinates = \"democratic\" have no lanes");
   CHECK(why("step = 0.1", "step = 0.1\nkernel = \"lazy\"") == "kernels of modified kicks have no lanes");
