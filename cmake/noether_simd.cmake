@@ -47,6 +47,9 @@ function(noether_simd target)
     if(level STREQUAL "avx2" AND CMAKE_CXX_FLAGS MATCHES "-fsanitize=address,undefined")
       target_compile_options(${objects} PRIVATE -fno-sanitize=all)
     endif()
+    if(NOETHER_FUZZ)  # as of the sources around them
+      target_compile_options(${objects} PRIVATE -fno-sanitize=undefined)
+    endif()
     # Kernels of constraints are large, and no processor of today runs those of the base level: there they take a third
     # of the time to compile.
     if(level STREQUAL "base" AND target STREQUAL "noether_constraints")
