@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the source package for aarch64, by a cross compiler on a bare system made by debootstrap, and runs an example there
-# under qemu: its digest is that of every other processor, for kernels are those of the level base. Without optimization of
-# the costly kind, which changes no bits.
+# under qemu: its digest is that of every other processor, for kernels are those of the level base. Without optimization,
+# which changes no bits.
 set -eu
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -62,8 +62,8 @@ in_bare "dpkg --add-architecture arm64
 # ---- the build, and what it builds ---------------------------------------------------------------------------------
 
 in_bare "cmake -G Ninja -S /source -B /build -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 \
-    -DCMAKE_C_COMPILER=aarch64-linux-gnu-gcc -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ -DCMAKE_BUILD_TYPE=Release \
-    -DCMAKE_CXX_FLAGS_RELEASE='-O1 -DNDEBUG' -DNOETHER_TESTS=OFF -DNOETHER_EXAMPLES=OFF -DNOETHER_BENCH=OFF \
+    -DCMAKE_C_COMPILER=aarch64-linux-gnu-gcc -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ -DCMAKE_BUILD_TYPE=Debug \
+    -DCMAKE_CXX_FLAGS_DEBUG='-O0 -DNDEBUG' -DNOETHER_TESTS=OFF -DNOETHER_EXAMPLES=OFF -DNOETHER_BENCH=OFF \
     -DNOETHER_WERROR=OFF
   ninja -C /build -j $(nproc) noether" >"$scratch/build.log" 2>&1 || {
   grep -E 'FAILED|error' "$scratch/build.log" | head -n 20
