@@ -268,12 +268,10 @@ TEST_CASE("runs on groups, by an action and of a block, killed at moments from s
 }
 
 TEST_CASE("so they do for hundreds of deaths", "[cli][resume][kill][.][nightly]") {
-  die_at_moments(small_run, 20, 400);
-  die_at_moments(large_run, 2, 150);
-  die_at_moments(chaotic_system, 20, 200);
-  die_at_moments(stiff_system, 0, 200);
-  die_at_moments(listed_run(), 0, 200);
-  for (const std::string& scene : {top_run, action_run, block_run}) die_at_moments(scene, 20, 100);
+  die_at_moments(small_run, 20, 120);
+  die_at_moments(large_run, 2, 40);
+  for (const std::string& scene : {stiff_system, listed_run()}) die_at_moments(scene, 0, 60);
+  for (const std::string& scene : {chaotic_system, top_run, action_run, block_run}) die_at_moments(scene, 20, 30);
 }
 
 }  // namespace

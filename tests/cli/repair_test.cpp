@@ -131,7 +131,7 @@ TEST_CASE("damage that once was taken for a wrong request is an error of the fil
   call_everything(1360, 1);
 }
 
-TEST_CASE("so it does with hundreds", "[cli][damage][.][nightly]") { call_everything(1000, 400); }
+TEST_CASE("so it does with hundreds", "[cli][damage][.][nightly]") { call_everything(1000, 120); }
 
 TEST_CASE("what a run is writing is not repaired, and what is not there cannot be", "[cli][repair][messages]") {
   const SceneFolder folder;

@@ -399,15 +399,13 @@ TEST_CASE("so does a run with a corrector and a kernel", "[trajectory][checkpoin
   die_anywhere(corrected, 6);
 }
 
-TEST_CASE("so does a large one", "[trajectory][checkpoint][kill][nightly]") { die_anywhere(large, 6); }
-
-TEST_CASE("the same for thousands of deaths", "[trajectory][kill][.][nightly]") {
-  die_at_writes(2000);
-  die_at_moments(500);
-  die_anywhere(small, 600);
-  die_anywhere(of_system, 600);
-  die_anywhere(corrected, 200);
-  die_anywhere(large, 150);
+TEST_CASE("the same for hundreds of deaths, and for a large run", "[trajectory][kill][.][nightly]") {
+  die_at_writes(500);
+  die_at_moments(100);
+  die_anywhere(small, 150);
+  die_anywhere(of_system, 150);
+  die_anywhere(corrected, 60);
+  die_anywhere(large, 30);
   die_within_each_write(of_system);
 }
 
