@@ -166,15 +166,16 @@ TEST_CASE("a billion steps are made, and their time is exact", "[extremes][night
   CHECK(std::abs(simulation.particles().positions()[0][0] - 0x1p-20 * outcome.time) < billion * 0x1p-47);
 }
 
-TEST_CASE("the program makes a billion steps, with an exact time", "[extremes][nightly]") {
+// A billion steps of the program are a verdict of study/suite/drift.toml.
+TEST_CASE("the program makes the million steps that an end in time asks for, with an exact time", "[extremes]") {
   const SceneFolder folder(
       "units = \"reduced\"\n[particles]\nbody = [{ mass = 1 }]\n[hamiltonian]\n"
       "type = \"kinetic_potential\"\nforce = [{ type = \"gravity\" }]\n[integrator]\n"
-      "method = \"verlet\"\nstep = 0.1\nuntil = 1e8\n");
+      "method = \"verlet\"\nstep = 0.1\nuntil = 1e5\n");
   const ProcessResult result = noether(folder, "run scene.toml --json");
   CHECK(result.exit_code == 0);
-  CHECK(json_member(result.out, "step") == "1000000000");
-  CHECK(json_member(result.out, "time") == "1e+08");
+  CHECK(json_member(result.out, "step") == "1000000");
+  CHECK(json_member(result.out, "time") == "1e+05");
 }
 
 TEST_CASE("the program runs no steps, forwards and backwards, with report, files and digest", "[extremes]") {
