@@ -26,6 +26,7 @@ struct Example {
   Length length;
   Bits bits = Bits::everywhere;
   std::int64_t few_steps = 1000;  ///< enough to tell program from scene; 0: it chooses its steps, and is run whole
+  bool twice = true;              ///< else a whole run takes minutes, and the scene alone makes one
 };
 
 const std::vector<Example> all = {
@@ -58,7 +59,7 @@ const std::vector<Example> all = {
     {"pendulum", pendulum::program, Length::quick},
     {"pendulum_by_its_action", pendulum_by_its_action::program, Length::quick, Bits::of_this_machine, 100},
     {"penning_trap", penning_trap::program, Length::quick, Bits::of_this_machine},
-    {"pythagorean", pythagorean::program, Length::nightly, Bits::everywhere, 20'000},
+    {"pythagorean", pythagorean::program, Length::nightly, Bits::everywhere, 20'000, false},
     {"rigid_water", rigid_water::program, Length::quick, Bits::of_this_machine, 100},
     {"robertson", robertson::program, Length::quick, Bits::of_this_machine, 0},
     {"saturn_rings", saturn_rings::program, Length::slow, Bits::of_this_machine, 10},
@@ -159,8 +160,8 @@ void check_whole(const Example& example) {
   const auto expected = outputs_in(readme_of(example.name));
   const ExampleFolder copy(example.name);
   REQUIRE(!expected.empty());
-  const std::string output = output_of(example.program);
-  CHECK(physics(output, example.bits) == physics(expected[0], example.bits));
+  const std::string output = example.twice ? output_of(example.program) : expected[0];
+  if (example.twice) CHECK(physics(output, example.bits) == physics(expected[0], example.bits));
   if (!has_scene(example.name)) return;
   REQUIRE(expected.size() == 2);
   const noether::Scene scene = scene_of(example.name);
