@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Builds and runs a fuzz target: tests/fuzz/run.sh TARGET [SECONDS] [OPTION OF LIBFUZZER]...
+# or builds them all:            tests/fuzz/run.sh --build
 # It begins with the seeds of the target in a scratch folder. Inputs that are findings are kept in build/fuzz/findings.
 set -eu
 target=${1:?the name of a target, such as scene}
@@ -7,7 +8,11 @@ seconds=${2:-60}
 shift $(($# < 2 ? $# : 2))
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-if ! [ -f "tests/fuzz/${target}_fuzz.cpp" ]; then
+if [ "$target" = --build ]; then
+  program=fuzz_targets
+elif [ -f "tests/fuzz/${target}_fuzz.cpp" ]; then
+  program=${target}_fuzz
+else
   echo "there is no target '$target'; expected one of:" tests/fuzz/*_fuzz.cpp >&2
   exit 2
 fi
@@ -22,8 +27,9 @@ mkdir -p build/fuzz/findings
 {
   flock 9
   [ -f build/fuzz/build.ninja ] || cmake --preset fuzz >build/fuzz.log 2>&1 9>&- || { cat build/fuzz.log; exit 4; }
-  cmake --build build/fuzz -j 2 --target "${target}_fuzz" >build/fuzz.log 2>&1 9>&- || { tail -50 build/fuzz.log; exit 4; }
+  cmake --build build/fuzz -j 2 --target "$program" >build/fuzz.log 2>&1 9>&- || { tail -50 build/fuzz.log; exit 4; }
 } 9>build/fuzz.lock
+[ "$target" != --build ] || exit 0
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
