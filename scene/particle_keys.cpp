@@ -83,6 +83,15 @@ std::optional<Box> read_box(TableReader& reader, SceneValue& effective) {
     if (*text == "open") return Box::open();
     reader.fail("box", fmt::format("box = \"{}\" is not understood; three lengths are expected, or \"open\"", *text));
   }
+  if (const auto* each = value->get<SceneValue::Array>()) {
+    for (const SceneValue& edge : *each) {
+      const std::string* text = edge.get<std::string>();
+      if (text == nullptr || *text != "open") continue;
+      reader.fail("box",
+                  "the box is \"open\" along one axis; it is periodic along all three, a shearing sheet too, or "
+                  "along none: give three lengths, or box = \"open\"");
+    }
+  }
   const auto edges = reader.vector("box", "length");
   try {
     return Box::periodic(Vec3<double>((*edges)[0], (*edges)[1], (*edges)[2]));
