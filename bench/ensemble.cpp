@@ -266,6 +266,7 @@ struct Stepped {
   std::int64_t steps;
   std::function<std::unique_ptr<LaneRun>(const ParticleSystem<double>&, const Clock<double>&)> lanes;
   AnyIntegrator<double> alone;
+  bool takes_changes;  ///< whether changes of a state go along
 };
 
 Stepped stepped(const std::string& name, std::int64_t steps) {
@@ -275,7 +276,7 @@ Stepped stepped(const std::string& name, std::int64_t steps) {
           [choice](const ParticleSystem<double>& like, const Clock<double>& clock) {
             return run_in_lanes(method_in_lanes(choice), ForceField<double>().add(Gravity{}), like, clock);
           },
-          classical(KineticPotential(ForceField<double>().add(Gravity{})), choice)};
+          classical(KineticPotential(ForceField<double>().add(Gravity{})), choice), info->family != "multistep"};
 }
 
 Stepped split(const std::string& name, const Scheme& scheme, std::int64_t steps) {
@@ -283,7 +284,7 @@ Stepped split(const std::string& name, const Scheme& scheme, std::int64_t steps)
     return std::make_unique<SplittingLanes>(systems_under_forces(ForceField<double>().add(Gravity{}), like, false),
                                             scheme, CompositionOptions{}, clock);
   };
-  return {name, steps, lanes, compose(KineticPotential(Gravity{}), scheme)};
+  return {name, steps, lanes, compose(KineticPotential(Gravity{}), scheme), true};
 }
 
 void measure(const bench::Rows& rows, const Orbits& orbits, const Stepped& one, bench::PeerProgram& peer) {
@@ -300,12 +301,13 @@ void measure(const bench::Rows& rows, const Orbits& orbits, const Stepped& one, 
       return run;
     };
     const auto run = begin(), with_changes = begin();
-    MegnoRun megno(*with_changes, bodies);
+    std::optional<MegnoRun> megno;
+    if (one.takes_changes) megno.emplace(*with_changes, bodies);
     const double seconds = bench::processor_seconds_of([&] {
       if (!run->advance(one.steps)) throw Error("a run failed");
     });
     const double with_megno = bench::processor_seconds_of([&] {
-      if (!megno.advance(one.steps)) throw Error("a run failed");
+      if (megno && !megno->advance(one.steps)) throw Error("a run failed");
     });
     run->settle();
     std::vector<ParticleSystem<double>> ends = orbits.starts;
@@ -318,7 +320,7 @@ void measure(const bench::Rows& rows, const Orbits& orbits, const Stepped& one, 
     if (round == 0 && peer.version()) tolerance = tolerance_of(peer, orbits, error);
     if (round > 0) {
       in_lanes.push_back(1e6 * seconds / LaneRun::lanes);
-      times.push_back(with_megno / seconds);
+      if (megno) times.push_back(with_megno / seconds);
       alone.push_back(1e6 * by_itself);
     }
     if (!tolerance) continue;
@@ -335,7 +337,7 @@ void measure(const bench::Rows& rows, const Orbits& orbits, const Stepped& one, 
   }
   const std::string name = fmt::format("1000 years, {} by {:.4g} days", one.name, step);
   rows.add(name + "/lanes", "system_us", bench::Measured(in_lanes), "us", bodies, beside);
-  rows.add(name + "/lanes, megno over plain", "ratio", bench::Measured(times), "1", bodies);
+  if (one.takes_changes) rows.add(name + "/lanes, megno over plain", "ratio", bench::Measured(times), "1", bodies);
   rows.add(name + "/alone", "system_us", bench::Measured(alone), "us", bodies);
   rows.add(name + "/lanes", "error", bench::Measured({error}), "1", bodies, beside_error);
 }

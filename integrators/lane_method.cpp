@@ -1,6 +1,7 @@
 #include "integrators/lane_method.hpp"
 
 #include "integrators/particle_vector.hpp"
+#include "numbers/error.hpp"
 
 #include <utility>
 
@@ -58,6 +59,9 @@ class MethodLanes final : public LaneRun {
   }
 
   void carry(std::size_t changes) override {
+    if (method_->goes_on_from_steps())
+      throw Error(
+          "the method goes on from earlier steps, which changes of a state do not; use a method of single steps");
     const LaneNumbers before = y_;
     const std::size_t v = place(1, 0);
     field_.carry(changes);

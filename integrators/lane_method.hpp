@@ -23,6 +23,8 @@ class LaneMethod {
   virtual std::vector<LaneNumbers*> memory() { return {}; }
   /// What it remembers of a change of one lane becomes longer by a power of 2, as the change does.
   virtual void scale_change(std::size_t /*lane*/, std::size_t /*change*/, double /*factor*/) {}
+  /// Whether it goes on from earlier steps, as changes of a state do not: none go along then.
+  virtual bool goes_on_from_steps() const { return false; }
   /// Before the first step, of length h, from y(t).
   virtual void begin(LaneField& f, double t, double h, const LaneNumbers& y) = 0;
   /// Goes from y(t) to y(t + h) in place, h always that of `begin`.

@@ -109,6 +109,7 @@ class AdamsLanes final : public LaneMethod {
         starter_(Adams<double>::parts_of_start),
         rates_(method.explicit_weights().size()) {}
 
+  bool goes_on_from_steps() const override { return true; }
   std::vector<LaneNumbers*> memory() override {
     std::vector<LaneNumbers*> all;
     rates_.add_to(all);
@@ -210,6 +211,7 @@ class StormerCowellLanes final : public LaneMethod {
         starter_(StormerCowell<double>::parts_of_start),
         pulls_(method.velocity_weights().size()) {}
 
+  bool goes_on_from_steps() const override { return true; }
   std::vector<LaneNumbers*> memory() override {
     std::vector<LaneNumbers*> all = {&sums_.value, &sums_.low};
     pulls_.add_to(all);

@@ -168,6 +168,7 @@ TEST_CASE("methods with a past go on in lanes from what is kept, and in a copy, 
       run.take(lane, s);
       return s;
     };
+    CHECK_THROWS_AS(begun()->carry(1), Error);  // changes of a state have no past
     const auto whole = begun();
     REQUIRE(whole->advance(all));
     // Before the start, in it, at its end (after order - 1 steps) and behind it.
