@@ -30,6 +30,8 @@ std::string hdf5_version() {
   return fmt::format("{}.{}.{}", major, minor, patch);
 }
 
+void end_hdf5() { H5close(); }
+
 using namespace hdf5;
 
 namespace {

@@ -10,6 +10,7 @@ namespace noether::io {
 bool has_hdf5() noexcept { return false; }
 
 std::string hdf5_version() { return ""; }
+void end_hdf5() {}
 
 class Hdf5Handle {};
 

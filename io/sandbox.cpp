@@ -1,5 +1,6 @@
 #include "io/sandbox.hpp"
 
+#include "io/hdf5_file.hpp"
 #include "numbers/error.hpp"
 
 #include <fcntl.h>
@@ -104,6 +105,7 @@ void tell(int pipe, std::string_view message) {
   prepare_to_crash(size);
   try {
     work();
+    end_hdf5();  // what it has written over shows now, and not in the parent
     tell(pipe, "");
   } catch (const Error& error) {
     tell(pipe, error.message());
