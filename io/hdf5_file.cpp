@@ -30,7 +30,9 @@ std::string hdf5_version() {
   return fmt::format("{}.{}.{}", major, minor, patch);
 }
 
-void end_hdf5() { H5close(); }
+void end_hdf5() {
+  if (H5Fget_obj_count(static_cast<hid_t>(H5F_OBJ_ALL), H5F_OBJ_ALL) == 0) H5close();
+}
 
 using namespace hdf5;
 

@@ -22,8 +22,8 @@ bool has_hdf5() noexcept;
 /// The version of HDF5 in use, such as "1.10.8"; empty in a build without it.
 std::string hdf5_version();
 
-/// Ends HDF5 in this process, which gives all of its memory back. Where it has written beyond a block, as it can while
-/// it changes a damaged file, the process crashes here.
+/// Ends HDF5 in this process if none of its files is open, and so gives all of its memory back. Where it has written
+/// beyond a block, as it can while it changes a damaged file, the process crashes here.
 void end_hdf5();
 
 /// One HDF5 object, closed with its last owner.
